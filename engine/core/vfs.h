@@ -1,0 +1,30 @@
+// Virtual files: folders mounted under one tree, read-only unless mounted writable. Virtual paths
+// use
+// '/', are relative, and cannot leave a mount by "..", absolute paths or symbolic links.
+#ifndef CORE_VFS_H
+#define CORE_VFS_H
+
+#include "core/base.h"
+
+typedef struct core_vfs core_vfs;
+core_vfs *core_vfs_create(void);
+void core_vfs_destroy(core_vfs *vfs);
+
+// Later mounts hide earlier ones. `at` "" mounts at the root. False + core_fail when dir is no
+// folder.
+bool core_vfs_mount(core_vfs *vfs, const char *dir, const char *at, bool writable);
+// Reads a whole file; core_free the result; *size excludes the added terminating zero. NULL +
+// core_fail (naming the virtual path, the mounts searched and the nearest existing name).
+void *core_vfs_read(core_vfs *vfs, const char *path, size_t *size);
+bool core_vfs_exists(core_vfs *vfs, const char *path);
+// Writes atomically (temporary file + rename), creates parent folders inside the mount.
+bool core_vfs_write(core_vfs *vfs, const char *path, const void *data, size_t size);
+// Names in a folder, sorted, newline-separated; core_free the result.
+char *core_vfs_list(core_vfs *vfs, const char *path);
+// Real path of an existing virtual file for libraries that open files themselves; false when
+// absent.
+bool core_vfs_resolve(core_vfs *vfs, const char *path, char *out, size_t out_size);
+// Modification stamp (changes when the file does), 0 when absent: hot reload polls it.
+uint64_t core_vfs_stamp(core_vfs *vfs, const char *path);
+
+#endif

@@ -1,0 +1,100 @@
+// Joins the rooms: entities with SoA transforms, components as handles into the rooms, and the
+// order of a step (design page 3). Rooms are made at first touch: an untouched room costs nothing.
+#ifndef SCENE_SCENE_H
+#define SCENE_SCENE_H
+
+#include "core/columns.h"
+#include "core/jobs.h"
+#include "core/metrics.h"
+#include "core/rng.h"
+#include "core/vfs.h"
+#include "gfx/gfx.h"
+#include "phys/phys.h"
+
+typedef struct scene scene;
+typedef core_handle scene_entity;
+
+// What script (or a C program) hears of a step. Any may be NULL.
+typedef struct scene_hooks {
+    void *ctx;
+    void (*fixed)(void *ctx, float dt);
+    void (*events)(void *ctx); // after physics: trigger and contact events may be read
+} scene_hooks;
+
+typedef struct scene_desc {
+    core_jobs *jobs;
+    core_metrics *metrics;
+    core_vfs *vfs;
+    uint64_t seed;
+    float dt;              // s, default 1/60
+    uint32_t max_entities; // default 1 << 20
+    uint32_t cookie;
+} scene_desc;
+scene_desc scene_desc_default(void);
+scene *scene_create(const scene_desc *desc);
+void scene_destroy(scene *s);
+void scene_set_hooks(scene *s, const scene_hooks *hooks);
+
+// The rooms. `scene_phys` makes the world on first call; `_if` gives NULL when untouched. Settings
+// kept by scene_setting are applied when the room is made.
+phys_world *scene_phys(scene *s);
+phys_world *scene_phys_if(const scene *s);
+gfx_world *scene_gfx(scene *s);
+gfx_world *scene_gfx_if(const scene *s);
+core_metrics *scene_metrics(const scene *s);
+core_vfs *scene_vfs(const scene *s);
+core_rng *scene_rng(scene *s, uint64_t stream); // CORE_RNG_SIM, CORE_RNG_VIEW
+
+// "phys.solver=soft" and the like: room prefix, dot, name. Applies now when the room exists and to
+// rooms made later. False + core_fail for unknown rooms, names or values.
+bool scene_setting(scene *s, const char *name, const char *value);
+
+// One fixed step: hooks.fixed, navigation and state machines, physics, hooks.events, poses, audio.
+bool scene_step(scene *s);
+uint64_t scene_step_index(const scene *s); // steps done
+float scene_dt(const scene *s);
+
+typedef struct scene_spawn_desc {
+    core_vec3 position;
+    core_quat rotation;
+    core_vec3 scale;            // zero: 1
+    scene_entity parent;        // null: none
+    const phys_body_desc *body; // NULL: none; position and rotation are the entity's
+    const phys_shape_desc *shapes;
+    uint32_t shape_count;
+    gfx_instance_desc *draw; // NULL: not drawn
+    core_vec3 draw_scale;    // size of the unit mesh; zero: 1
+    const char *name;        // NULL: none
+    uint32_t cookie;
+} scene_spawn_desc;
+scene_spawn_desc scene_spawn_desc_default(void);
+scene_entity scene_spawn(scene *s, const scene_spawn_desc *desc);
+bool scene_despawn(scene *s, scene_entity e);
+bool scene_alive(const scene *s, scene_entity e);
+uint32_t scene_entity_count(const scene *s);
+phys_body scene_entity_body(const scene *s, scene_entity e);
+gfx_instance scene_entity_instance(const scene *s, scene_entity e);
+scene_entity scene_entity_of_body(const scene *s, phys_body body);
+
+bool scene_position(const scene *s, scene_entity e, core_vec3 *out); // world
+bool scene_rotation(const scene *s, scene_entity e, core_quat *out); // world
+bool scene_set_position(scene *s, scene_entity e,
+                        core_vec3 p); // teleports the body, resets interpolation
+bool scene_set_rotation(scene *s, scene_entity e, core_quat q);
+bool scene_set_scale(scene *s, scene_entity e, core_vec3 v);
+
+// Writes interpolated transforms into gfx: alpha 0 = previous step, 1 = current. Changes no
+// simulation state. No-op without gfx.
+void scene_sync_draw(scene *s, float alpha);
+
+// Column sets of all rooms in a fixed order, for hash, save and divergence reports.
+int scene_state(const scene *s, const core_columns **out, int capacity);
+uint64_t scene_hash(const scene *s);
+// counts, memory by room (bytes) for metrics.
+void scene_counts(const scene *s);
+typedef struct scene_memory {
+    size_t core, phys, gfx, anim, nav, audio;
+} scene_memory;
+scene_memory scene_memory_use(const scene *s);
+
+#endif

@@ -1,0 +1,71 @@
+// Lua for a scene. Several states may be bound to one scene; no static per-state data.
+#ifndef SCRIPT_SCRIPT_H
+#define SCRIPT_SCRIPT_H
+
+#include "scene/scene.h"
+
+typedef struct script script;
+
+// What app tells and hears. Strings are borrowed for the call only.
+typedef struct script_host {
+    void *ctx;
+    // `value` receives the --set text for a parameter, NULL when not given.
+    const char *(*param)(void *ctx, const char *name);
+    void (*exit)(void *ctx, int code);
+    bool (*run)(void *ctx, const char *path); // change scene at the next step boundary
+    void (*user_metric)(void *ctx, const char *name, double value);
+    // Value of a metric by its dotted JSON path ("accuracy.penetration_max_m"); NaN when unknown.
+    double (*metric)(void *ctx, const char *path, bool *known);
+    void (*warning)(void *ctx, const char *text);
+    // Input of this step; action or key by name ("space", "fire").
+    bool (*input_down)(void *ctx, const char *name, bool *known);
+    float (*input_axis)(void *ctx, const char *name, bool *known);
+    void (*pause)(void *ctx, bool paused);
+    void (*time_scale)(void *ctx, float scale);
+} script_host;
+
+typedef struct script_desc {
+    scene *scene;
+    const script_host *host;
+    bool headless;
+    bool keep_going;
+    int argc; // after `--`
+    const char *const *argv;
+    uint32_t cookie;
+} script_desc;
+script_desc script_desc_default(void);
+script *script_create(const script_desc *desc);
+void script_destroy(script *s);
+
+// conf.lua / corsac.conf: what a scene may set before worlds are made. Zero: not set.
+typedef struct script_conf {
+    uint64_t steps, seed;
+    bool has_seed;
+    double dt;
+    int threads;
+    uint32_t width, height;
+    char render[16];
+    char title[128];
+    uint32_t setting_count; // conf.phys = {...} and the like: "phys.solver" = "soft"
+    char setting_name[32][64];
+    char setting_value[32][64];
+} script_conf;
+
+// Runs the file at top level (defining callbacks), then corsac.conf(t). False: error already shown.
+bool script_load_file(script *s, const char *virtual_path, script_conf *conf);
+bool script_load(script *s);              // corsac.load(args)
+void script_fixed(script *s, float dt);   // corsac.fixed
+void script_update(script *s, double dt); // corsac.update
+void script_draw(script *s);              // corsac.draw
+void script_event(script *s, const char *name, const char *text, const double *values, int count);
+void script_quit(script *s); // corsac.quit
+// Errors so far in this run; the last one's text with file:line, reason and traceback.
+int script_error_count(const script *s);
+const char *script_last_error(const script *s);
+// corsac.expect: evaluates registered checks. Returns how many fell short; each is logged.
+int script_check_expectations(script *s);
+size_t script_bytes(const script *s); // Lua heap
+// Names given with --set that no corsac.param declared; NULL-terminated by count.
+bool script_param_declared(const script *s, const char *name);
+
+#endif
