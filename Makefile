@@ -11,7 +11,7 @@ OUT := $(if $(filter gcc-release,$(TAG)),build,build/$(TAG))
 GEN := build/gen
 
 WARN := -Wall -Wextra -Werror -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
-BASE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -g -pthread -Iengine -I$(GEN)
+BASE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -g -pthread -Iengine -isystem $(GEN)
 OPT_release := -O2
 OPT_debug := -O1 -DCORE_DEBUG
 OPT_asan := -O1 -DCORE_DEBUG -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
