@@ -1,0 +1,270 @@
+// Skeletons, clips and state machines. A pose is a pure function of an instance's state (which
+// clip, at what time, under which cross-fade): the state is kept in columns and hashed, poses are
+// computed for the instances that are seen. SI units, seconds, radians; right-handed, +Y up.
+//
+// A step is two passes (design page 3): anim_world_update before physics advances time, evaluates
+// transitions and calls back; anim_world_pose after it computes skinning palettes.
+#ifndef ANIM_ANIM_H
+#define ANIM_ANIM_H
+
+#include "core/columns.h"
+#include "core/data.h"
+#include "core/jobs.h"
+#include "core/metrics.h"
+
+#define ANIM_MAX_BONES      1024u
+#define ANIM_MAX_STATES     256u
+#define ANIM_MAX_PARAMETERS 16u // per machine
+#define ANIM_MAX_EVENTS     32u // names that transitions of one machine listen to
+#define ANIM_PALETTE_FLOATS 12u // 3x4 row-major: row r is {m[r][0], m[r][1], m[r][2], m[r][3]}
+
+typedef struct anim_world anim_world;
+typedef core_handle anim_skeleton; // resource
+typedef core_handle anim_clip;     // resource, made for one skeleton
+typedef core_handle anim_machine;  // resource: states and transitions, shared by instances
+typedef core_handle anim_instance; // one animated thing
+
+typedef struct anim_world_desc {
+    core_jobs *jobs;        // NULL: serial. Borrowed
+    core_metrics *metrics;  // NULL: unmeasured. Borrowed
+    uint32_t max_instances; // default 1 << 16 (address space only)
+    uint32_t max_bones;     // of all instances together, default 1 << 22
+    uint32_t cookie;
+} anim_world_desc;
+anim_world_desc anim_world_desc_default(void);
+anim_world *anim_world_create(const anim_world_desc *desc);
+void anim_world_destroy(anim_world *world);
+
+// Advances every instance by dt >= 0 seconds, in row order: time, transitions, callbacks, root
+// motion. Callbacks may call any anim function; instances they destroy go at the end of the pass.
+bool anim_world_update(anim_world *world, float dt);
+// Computes the palettes of visible instances from their present state. No state changes.
+void anim_world_pose(anim_world *world);
+bool anim_world_set(anim_world *world, const char *name, const char *value);
+int anim_world_state(const anim_world *world, const core_columns **out, int capacity);
+size_t anim_world_bytes(const anim_world *world);
+void anim_world_counts(const anim_world *world, core_metrics *metrics); // skeletons, bones
+// Largest distance (m) between the palettes last computed and a double-precision evaluation of the
+// same state that shares no code with them: joint origins and points 0.1 m from them along each
+// axis. At most `sample` instances are looked at (0 = all). 0 when nothing is posed.
+double anim_world_error_max(anim_world *world, uint32_t sample);
+
+// ---- skeletons ----
+// Copies. Refuses parents that do not come first, non-finite numbers, zero quaternions, more than
+// ANIM_MAX_BONES bones.
+anim_skeleton anim_skeleton_create(anim_world *world, const core_skeleton_data *data);
+// False while clips or instances use it.
+bool anim_skeleton_destroy(anim_world *world, anim_skeleton skeleton);
+uint32_t anim_skeleton_bone_count(const anim_world *world, anim_skeleton skeleton); // 0: stale
+// Bone by name, -1 when there is none.
+int32_t anim_skeleton_find(const anim_world *world, anim_skeleton skeleton, const char *name);
+const char *anim_skeleton_bone_name(const anim_world *world, anim_skeleton skeleton, uint32_t bone);
+int32_t anim_skeleton_parent(const anim_world *world, anim_skeleton skeleton, uint32_t bone);
+// Writes up to `capacity` children of a bone, ascending; returns how many there are.
+uint32_t anim_skeleton_children(const anim_world *world, anim_skeleton skeleton, uint32_t bone,
+                                uint32_t *out, uint32_t capacity);
+
+// ---- clips ----
+typedef struct anim_clip_event {
+    float time;    // seconds, [0, duration]
+    char name[32]; // reported by anim_world_events
+} anim_clip_event;
+typedef struct anim_clip_desc {
+    const core_clip_data *data; // copied
+    anim_skeleton skeleton;     // bones without a track keep its bind pose
+    // Root motion: the horizontal translation (and `root_vertical`, the vertical one) of bone
+    // `root_bone` leaves the pose and is reported by anim_instance_root_motion.
+    bool root_motion, root_vertical;
+    uint32_t root_bone;
+    const anim_clip_event *event; // any order, copied
+    uint32_t event_count;
+    uint32_t cookie;
+} anim_clip_desc;
+anim_clip_desc anim_clip_desc_default(void);
+// Refuses clips whose bone count differs from the skeleton's, unsorted or equal times, non-finite
+// numbers, zero quaternions and durations that are not > 0.
+anim_clip anim_clip_create(anim_world *world, const anim_clip_desc *desc);
+bool anim_clip_destroy(anim_world *world, anim_clip clip);
+const char *anim_clip_name(const anim_world *world, anim_clip clip);
+float anim_clip_duration(const anim_world *world, anim_clip clip); // seconds; 0: stale
+anim_clip anim_clip_find(const anim_world *world, anim_skeleton skeleton, const char *name);
+// Keys of one bone; *count 0 when the bone has no track. Valid while the clip lives.
+const core_key *anim_clip_keys(const anim_world *world, anim_clip clip, uint32_t bone,
+                               uint32_t *count);
+
+// A local pose: arrays of bone_count elements, the caller's.
+typedef struct anim_pose {
+    core_vec3 *translation;
+    core_quat *rotation;
+    core_vec3 *scale;
+} anim_pose;
+// Linear interpolation between keys (rotation: slerp the short way); times outside are clamped to
+// the first and last key.
+bool anim_clip_sample(const anim_world *world, anim_clip clip, float time, anim_pose out);
+// out = a + (b - a) * alpha for every bone, rotation nlerp the short way; alpha is clamped to
+// [0, 1]; 0 and 1 give the ends bit for bit. out may be a or b.
+void anim_pose_blend(anim_pose a, anim_pose b, float alpha, uint32_t bone_count, anim_pose out);
+// Interpolation of two keys at alpha in [0, 1] (the report's interpolateKeyframes).
+core_key anim_key_interpolate(const core_key *a, const core_key *b, float alpha);
+// Model-space matrices of a local pose, [bone_count].
+bool anim_pose_to_model(const anim_world *world, anim_skeleton skeleton, anim_pose pose,
+                        core_mat4 *model);
+// palette[bone] = model * inverse bind, ANIM_PALETTE_FLOATS each.
+bool anim_model_to_palette(const anim_world *world, anim_skeleton skeleton, const core_mat4 *model,
+                           float *palette);
+// Linear blend skinning on the processor, the reference for the GPU. normal may be NULL. Each
+// output is [vertex_count*3].
+bool anim_skin(const core_mesh_data *mesh, const float *palette, uint32_t bone_count,
+               float *position, float *normal);
+
+// ---- state machines ----
+// Callbacks get the ctx of their state or transition. A condition returns whether to go.
+typedef bool anim_condition_fn(void *ctx, anim_world *world, anim_instance instance);
+typedef void anim_state_fn(void *ctx, anim_world *world, anim_instance instance);
+typedef void anim_tick_fn(void *ctx, anim_world *world, anim_instance instance, float dt);
+// Factor on the playing speed; `phase` in [0, 1] is the place in the clip. Non-finite results
+// count as 1.
+typedef float anim_speed_fn(void *ctx, anim_world *world, anim_instance instance, float phase);
+
+typedef enum anim_loop { ANIM_LOOP, ANIM_ONCE, ANIM_PING_PONG } anim_loop;
+typedef struct anim_state_desc {
+    const char *name; // unique in the machine
+    anim_clip clip;
+    anim_loop loop;
+    float speed; // 0: 1; negative plays backwards
+    anim_state_fn *on_enter, *on_exit;
+    anim_tick_fn *on_tick;
+    anim_speed_fn *speed_fn;
+    void *ctx;
+} anim_state_desc;
+
+typedef enum anim_when {
+    ANIM_WHEN_FINISHED,  // time + length >= duration: the fade ends as the clip (or its cycle) does
+    ANIM_WHEN_CONDITION, // `condition` returns true
+    ANIM_WHEN_EVENT,     // anim_instance_send of `event` since the last update
+    ANIM_WHEN_PARAMETER  // parameter OP value
+} anim_when;
+typedef enum anim_compare {
+    ANIM_GREATER,
+    ANIM_LESS,
+    ANIM_GREATER_EQUAL,
+    ANIM_LESS_EQUAL,
+    ANIM_EQUAL,
+    ANIM_NOT_EQUAL
+} anim_compare;
+typedef enum anim_fade {
+    ANIM_FADE_LINEAR,
+    ANIM_FADE_SMOOTH // 3s^2 - 2s^3: cubic Hermite with zero end slopes
+} anim_fade;
+typedef struct anim_transition_desc {
+    const char *from, *to; // from NULL: any state but `to`
+    anim_when when;
+    anim_condition_fn *condition;
+    void *ctx;
+    const char *event;
+    const char *parameter;
+    anim_compare compare;
+    float value;
+    float length; // seconds of the cross-fade, >= 0; 0 cuts
+    anim_fade fade;
+    bool uninterruptible; // no other transition starts before this one ends
+    bool sync;            // the target starts at the phase of the state left
+} anim_transition_desc;
+typedef struct anim_parameter_desc {
+    const char *name;
+    float value; // at the start
+} anim_parameter_desc;
+typedef struct anim_machine_desc {
+    const char *initial; // NULL: the first state
+    const anim_state_desc *state;
+    uint32_t state_count;                   // 1..ANIM_MAX_STATES
+    const anim_transition_desc *transition; // the first that matches goes, in this order
+    uint32_t transition_count;
+    const anim_parameter_desc *parameter;
+    uint32_t parameter_count;
+    uint32_t cookie;
+} anim_machine_desc;
+anim_machine_desc anim_machine_desc_default(void);
+// All clips must be of one skeleton. Errors name the state or transition and the nearest name.
+anim_machine anim_machine_create(anim_world *world, const anim_machine_desc *desc);
+bool anim_machine_destroy(anim_world *world, anim_machine machine); // false while in use
+// Graphviz text of the machine; core_free it. `instance` (null: none) marks its present state.
+char *anim_machine_dot(const anim_world *world, anim_machine machine, anim_instance instance);
+
+// Callback order. A transition starting from A to B: (when another was running, onExit of the state
+// it was leaving), onEnter(B). At its end: onExit(A). Zero length does both at once: onExit(A)
+// comes first. onTick(current state) follows each update's transitions. B is the current state from
+// the start of the transition on; a later transition interrupts it from a snapshot of the blended
+// pose.
+
+// ---- instances ----
+typedef struct anim_instance_desc {
+    anim_skeleton skeleton;
+    anim_machine machine; // null: `clip` is played, or the bind pose
+    anim_clip clip;
+    anim_loop loop; // of clip
+    float time;     // start, seconds
+    float speed;    // 0: 1; use anim_instance_set_speed to stop
+    uint64_t user;  // the caller's own, never read
+    uint32_t cookie;
+} anim_instance_desc;
+anim_instance_desc anim_instance_desc_default(void);
+anim_instance anim_instance_create(anim_world *world, const anim_instance_desc *desc);
+bool anim_instance_destroy(anim_world *world, anim_instance instance);
+bool anim_instance_alive(const anim_world *world, anim_instance instance);
+uint64_t anim_instance_user(const anim_world *world, anim_instance instance);
+uint32_t anim_instance_bone_count(const anim_world *world, anim_instance instance);
+anim_skeleton anim_instance_skeleton(const anim_world *world, anim_instance instance);
+
+// Leaves the machine's choice for `clip` (or plays on an instance without one), fading over
+// `length` seconds from the pose of this moment.
+bool anim_instance_play(anim_world *world, anim_instance instance, anim_clip clip, anim_loop loop,
+                        float length, anim_fade fade);
+// Forces a state of the machine, as a transition would.
+bool anim_instance_go(anim_world *world, anim_instance instance, const char *state, float length,
+                      anim_fade fade);
+bool anim_instance_set_time(anim_world *world, anim_instance instance, float time);
+float anim_instance_time(const anim_world *world, anim_instance instance); // current clip, seconds
+bool anim_instance_set_speed(anim_world *world, anim_instance instance, float speed);
+bool anim_instance_finished(const anim_world *world, anim_instance instance); // time >= duration
+bool anim_instance_set_parameter(anim_world *world, anim_instance instance, const char *name,
+                                 float value);
+bool anim_instance_parameter(const anim_world *world, anim_instance instance, const char *name,
+                             float *out);
+bool anim_instance_send(anim_world *world, anim_instance instance, const char *event);
+const char *anim_instance_state(const anim_world *world, anim_instance instance); // "" without one
+// Progress [0, 1) of a running cross-fade and the state left; 1 when none runs.
+float anim_instance_fade(const anim_world *world, anim_instance instance, const char **from);
+// Transitions that could start from the current state, in order: their target names. Returns how
+// many there are.
+uint32_t anim_instance_transitions(const anim_world *world, anim_instance instance, const char **to,
+                                   uint32_t capacity);
+// Instances that are not visible keep their state machine running and are not posed.
+bool anim_instance_set_visible(anim_world *world, anim_instance instance, bool visible);
+// Displacement of the root in the last update, in the instance's own frame.
+bool anim_instance_root_motion(const anim_world *world, anim_instance instance, core_vec3 *out);
+
+// Local pose of this moment, evaluated now.
+bool anim_instance_pose(anim_world *world, anim_instance instance, anim_pose out);
+// Palette of the last anim_world_pose: bone_count * ANIM_PALETTE_FLOATS floats, valid until the
+// next create, destroy or pose. NULL before the first.
+const float *anim_instance_palette(const anim_world *world, anim_instance instance,
+                                   uint32_t *bone_count);
+// Model-space matrix of a bone at the last anim_world_pose (attachment points).
+bool anim_instance_bone(const anim_world *world, anim_instance instance, uint32_t bone,
+                        core_mat4 *out);
+// Rows for loops over all instances, in creation order until something is destroyed.
+uint32_t anim_instance_count(const anim_world *world);
+anim_instance anim_instance_at(const anim_world *world, uint32_t row);
+
+// Clip events passed in the last update, in row order then time order. Loops, backward play and
+// steps longer than the clip report each passing.
+typedef struct anim_event {
+    anim_instance instance;
+    anim_clip clip;
+    const char *name; // valid while the clip lives
+    float time;
+} anim_event;
+uint32_t anim_world_events(const anim_world *world, const anim_event **out);
+
+#endif
