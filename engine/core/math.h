@@ -99,6 +99,7 @@ core_vec3 core_mat4_point(const core_mat4 *m, core_vec3 p); // w assumed 1, no d
 core_mat4 core_mat4_look_at(core_vec3 eye, core_vec3 target, core_vec3 up);
 // Reversed-Z infinite projection, depth 1 at near and 0 at infinity (design page 8).
 core_mat4 core_mat4_perspective(float fovy, float aspect, float near_plane);
+// Orthographic with the same reversed depth: 1 at near, 0 at far.
 core_mat4 core_mat4_ortho(float left, float right, float bottom, float top, float near_plane,
                           float far_plane);
 
