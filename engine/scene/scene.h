@@ -11,6 +11,8 @@
 #include "gfx/gfx.h"
 #include "phys/phys.h"
 
+#define SCENE_NAME_MAX 64 // bytes with the terminating zero; longer names are refused
+
 typedef struct scene scene;
 typedef core_handle scene_entity;
 
@@ -34,6 +36,9 @@ scene_desc scene_desc_default(void);
 scene *scene_create(const scene_desc *desc);
 void scene_destroy(scene *s);
 void scene_set_hooks(scene *s, const scene_hooks *hooks);
+// What conf may still change: workers (borrowed), seed and step length (s, finite, > 0, <= 1).
+// False + core_fail once a room, an entity or a step exists.
+bool scene_configure(scene *s, core_jobs *jobs, uint64_t seed, float dt);
 
 // The rooms. `scene_phys` makes the world on first call; `_if` gives NULL when untouched. Settings
 // kept by scene_setting are applied when the room is made.
@@ -49,22 +54,27 @@ core_rng *scene_rng(scene *s, uint64_t stream); // CORE_RNG_SIM, CORE_RNG_VIEW
 // rooms made later. False + core_fail for unknown rooms, names or values.
 bool scene_setting(scene *s, const char *name, const char *value);
 
+// Rooms that this build has: "phys", "gfx", ... false for others.
+bool scene_room_built(const char *room);
+
 // One fixed step: hooks.fixed, navigation and state machines, physics, hooks.events, poses, audio.
 bool scene_step(scene *s);
 uint64_t scene_step_index(const scene *s); // steps done
 float scene_dt(const scene *s);
 
 typedef struct scene_spawn_desc {
-    core_vec3 position;
-    core_quat rotation;
-    core_vec3 scale;            // zero: 1
-    scene_entity parent;        // null: none
+    core_vec3 position; // m; relative to the parent
+    core_quat rotation; // zero: identity; relative to the parent
+    core_vec3 scale;    // zero: 1; acts on the mesh and on children, never on the body
+    // null: none. Children are despawned with it. An entity with a body is placed by its parent
+    // once, then the body leads.
+    scene_entity parent;
     const phys_body_desc *body; // NULL: none; position and rotation are the entity's
     const phys_shape_desc *shapes;
     uint32_t shape_count;
     gfx_instance_desc *draw; // NULL: not drawn
     core_vec3 draw_scale;    // size of the unit mesh; zero: 1
-    const char *name;        // NULL: none
+    const char *name;        // NULL: none; need not be unique
     uint32_t cookie;
 } scene_spawn_desc;
 scene_spawn_desc scene_spawn_desc_default(void);
@@ -75,6 +85,12 @@ uint32_t scene_entity_count(const scene *s);
 phys_body scene_entity_body(const scene *s, scene_entity e);
 gfx_instance scene_entity_instance(const scene *s, scene_entity e);
 scene_entity scene_entity_of_body(const scene *s, phys_body body);
+const char *scene_entity_name(const scene *s, scene_entity e); // "" when it has none or is stale
+scene_entity scene_find(const scene *s, const char *name);     // oldest with that name, or null
+scene_entity scene_parent(const scene *s, scene_entity e);
+scene_entity scene_entity_at(const scene *s, uint32_t row); // row < scene_entity_count
+// Keeps the world pose. Null parent: a root. False + core_fail for stale handles and cycles.
+bool scene_set_parent(scene *s, scene_entity e, scene_entity parent);
 
 bool scene_position(const scene *s, scene_entity e, core_vec3 *out); // world
 bool scene_rotation(const scene *s, scene_entity e, core_quat *out); // world
@@ -90,6 +106,9 @@ void scene_sync_draw(scene *s, float alpha);
 // Column sets of all rooms in a fixed order, for hash, save and divergence reports.
 int scene_state(const scene *s, const core_columns **out, int capacity);
 uint64_t scene_hash(const scene *s);
+// "phys.bodies row 12 (entity 'ball', handle 13:1)": names one row of a set that scene_state gave.
+void scene_describe_row(const scene *s, const core_columns *set, uint32_t row, char *out,
+                        size_t size);
 // counts, memory by room (bytes) for metrics.
 void scene_counts(const scene *s);
 typedef struct scene_memory {

@@ -1,0 +1,103 @@
+// What the files of engine/scene share.
+#ifndef SCENE_SCENE_INTERNAL_H
+#define SCENE_SCENE_INTERNAL_H
+
+#include "scene/scene.h"
+
+// Local transform and links are state; world and previous transforms follow from them and from the
+// bodies, so they are neither hashed nor saved. An entity with a body takes its world pose from the
+// body: its local columns then keep the pose it was spawned with.
+#define SCENE_ENTITY_COLUMNS(X)                                                                    \
+    X(float, px, CORE_COLUMN_STATE)                                                                \
+    X(float, py, CORE_COLUMN_STATE)                                                                \
+    X(float, pz, CORE_COLUMN_STATE)                                                                \
+    X(float, qx, CORE_COLUMN_STATE)                                                                \
+    X(float, qy, CORE_COLUMN_STATE)                                                                \
+    X(float, qz, CORE_COLUMN_STATE)                                                                \
+    X(float, qw, CORE_COLUMN_STATE)                                                                \
+    X(float, sx, CORE_COLUMN_STATE)                                                                \
+    X(float, sy, CORE_COLUMN_STATE)                                                                \
+    X(float, sz, CORE_COLUMN_STATE)                                                                \
+    X(core_handle, parent, CORE_COLUMN_STATE)                                                      \
+    X(core_handle, first_child, CORE_COLUMN_STATE)                                                 \
+    X(core_handle, next_sibling, CORE_COLUMN_STATE)                                                \
+    X(core_handle, prev_sibling, CORE_COLUMN_STATE)                                                \
+    X(uint32_t, depth, CORE_COLUMN_STATE)                                                          \
+    X(core_handle, body, CORE_COLUMN_STATE)                                                        \
+    X(core_handle, name, CORE_COLUMN_STATE)                                                        \
+    X(float, wpx, 0)                                                                               \
+    X(float, wpy, 0)                                                                               \
+    X(float, wpz, 0)                                                                               \
+    X(float, wqx, 0)                                                                               \
+    X(float, wqy, 0)                                                                               \
+    X(float, wqz, 0)                                                                               \
+    X(float, wqw, 0)                                                                               \
+    X(float, wsx, 0)                                                                               \
+    X(float, wsy, 0)                                                                               \
+    X(float, wsz, 0)                                                                               \
+    X(float, opx, 0)                                                                               \
+    X(float, opy, 0)                                                                               \
+    X(float, opz, 0)                                                                               \
+    X(float, oqx, 0)                                                                               \
+    X(float, oqy, 0)                                                                               \
+    X(float, oqz, 0)                                                                               \
+    X(float, oqw, 0)                                                                               \
+    X(core_handle, instance, 0)                                                                    \
+    X(float, dx, 0)                                                                                \
+    X(float, dy, 0)                                                                                \
+    X(float, dz, 0)
+CORE_COLUMNS_DECLARE(scene_entities, SCENE_ENTITY_COLUMNS)
+
+typedef struct scene_name_text {
+    char text[SCENE_NAME_MAX]; // zero-padded: the whole array is hashed
+} scene_name_text;
+#define SCENE_NAME_COLUMNS(X)                                                                      \
+    X(scene_name_text, text, CORE_COLUMN_STATE) X(core_handle, entity, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(scene_names, SCENE_NAME_COLUMNS)
+
+// One row: what the scene itself remembers from step to step.
+#define SCENE_CLOCK_COLUMNS(X)                                                                     \
+    X(uint64_t, step, CORE_COLUMN_STATE) X(core_rng, sim, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(scene_clock, SCENE_CLOCK_COLUMNS)
+
+typedef struct scene_kept_setting { // given before its room was made
+    char room[16], name[48], value[64];
+} scene_kept_setting;
+#define SCENE_MAX_SETTINGS 128
+
+struct scene {
+    core_jobs *jobs;
+    core_metrics *metrics;
+    core_vfs *vfs;
+    uint64_t seed;
+    float dt;
+    scene_hooks hooks;
+    scene_entities entity;
+    scene_names name;
+    scene_clock clock;
+    core_rng view_rng;
+    phys_world *phys;
+    gfx_world *gfx;
+    scene_kept_setting *setting; // [SCENE_MAX_SETTINGS], made with the first one
+    uint32_t setting_count;
+    uint32_t *order; // rows with a parent, parents before children; rebuilt when links change
+    uint32_t order_count, order_capacity;
+    uint32_t *depth_start; // [depth_capacity] counting sort's scratch
+    uint32_t depth_capacity;
+    bool order_stale;
+};
+
+uint32_t scene_row(const scene *s, scene_entity e); // CORE_NO_ROW + core_fail when stale
+// scene_hierarchy.c
+void scene_link(scene *s, uint32_t row, scene_entity parent);
+void scene_unlink(scene *s, uint32_t row);
+void scene_world_of(scene *s, uint32_t row);         // world from parent and local
+void scene_local_from_world(scene *s, uint32_t row); // the inverse
+void scene_world_of_children(scene *s);              // all rows with a parent, parents first
+void scene_subtree_moved(scene *s, scene_entity e);  // worlds below e; interpolation reset
+void scene_interpolation_reset(scene *s, uint32_t row);
+// scene_sync.c
+void scene_keep_previous(scene *s);
+void scene_pull_bodies(scene *s);
+
+#endif
