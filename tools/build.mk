@@ -5,7 +5,7 @@
 
 # The machine is set up once: packages (their flags land in build/packages.mk) and generated
 # sources. A stamp's name changes when its recipe does, so copied or cached trees stay valid.
-NEEDS_BUILD := $(filter-out clean help fmt,$(or $(MAKECMDGOALS),all))
+NEEDS_BUILD := $(filter-out clean distclean help fmt lint,$(or $(MAKECMDGOALS),all))
 GEN_READY := $(GEN)/ready-1
 ifneq ($(NEEDS_BUILD),)
 include build/packages.mk
@@ -22,17 +22,21 @@ $(GEN_READY): | build/packages.mk
 WRAP_FLAGS := $(WRAP:%=-Wl,--wrap=%)
 LIBS = -l:libluajit-5.1.a $(PKG_LIBS) -lm -ldl -lpthread
 
-# Objects depend on the flags they were made with, archives on the list of their members.
+# Objects depend on the flags they were made with, archives and programs on what they are made of.
 define remember
-$(if $(filter-out x$(strip $2),x$(strip $(file <$1))),$(shell mkdir -p $(dir $1))$(file >$1,$2))
+$1: FORCE | build/packages.mk
+	@mkdir -p $$(@D); echo '$2' | cmp -s - $$@ || echo '$2' >$$@
 endef
-ifneq ($(NEEDS_BUILD),)
-$(call remember,$(OBJ)/flags,$(CC) $(CFLAGS_ALL) $(PKG_CFLAGS))
-$(call remember,$(OBJ)/members,$(LIB_OBJ))
-$(call remember,$(OBJ)/link,$(LIBS) $(LINK_$(MODE)) $(WRAP_FLAGS) $(LDFLAGS))
-endif
+$(eval $(call remember,$(OBJ)/flags,$(CC) $$(CFLAGS_ALL) $(PKG_CFLAGS)))
+$(eval $(call remember,$(OBJ)/members,$(LIB_OBJ)))
+$(eval $(call remember,$(OBJ)/link,$(APP_OBJ) $(LIBS) $(LINK_$(MODE)) $(WRAP_FLAGS) $(LDFLAGS)))
+.PHONY: FORCE
 COMPILE = @mkdir -p $(@D); echo "  CC    $@"; $(CC) $(CFLAGS_ALL) $(PKG_CFLAGS) -MMD -MP
 LINK = @mkdir -p $(@D); echo "  LINK  $@"; $(CC) $(LINK_$(MODE)) -pthread $(LDFLAGS)
+
+# What C users may include: one header a room, and those of core that stand alone.
+PUBLIC_HEADERS := $(foreach room,phys gfx anim nav audio asset scene script,$(wildcard engine/$(room)/$(room).h)) \
+    $(filter-out engine/core/simd_% %_internal.h,$(wildcard engine/core/*.h))
 
 .PHONY: all
 all: $(OUT)/libcorsac.a $(if $(APP_SRC),$(OUT)/corsac)

@@ -25,7 +25,7 @@ typedef struct script_host {
 } script_host;
 
 typedef struct script_desc {
-    scene *scene;
+    struct scene *scene;
     const script_host *host;
     bool headless;
     bool keep_going;
