@@ -18,7 +18,7 @@ double core_acos(double x);
 double core_atan(double x);
 double core_atan2(double y, double x);
 double core_exp(double x);
-double core_log(double x);
+double core_ln(double x); // natural logarithm; core_log is the log (log.h)
 double core_log2(double x);
 double core_log10(double x);
 double core_pow(double x, double y); // core_pow(x, 2) == x*x exactly: compiled Lua traces do that
@@ -38,7 +38,7 @@ float core_asinf(float x);
 float core_acosf(float x);
 float core_atan2f(float y, float x);
 float core_expf(float x);
-float core_logf(float x);
+float core_lnf(float x);
 float core_powf(float x, float y);
 static inline float core_sqrtf(float x) { return __builtin_sqrtf(x); }
 static inline double core_sqrt(double x) { return __builtin_sqrt(x); }
