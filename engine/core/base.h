@@ -52,8 +52,9 @@ const char *core_last_error(void);
 void core_clear_error(void);
 
 // Heap access of the engine: every engine allocation goes through these so that
-// `steady_allocations` is an honest count. Zeroed memory. Out of memory ends the program with one
-// line (nothing sensible can follow). core_free(NULL) is fine.
+// `steady_allocations` is an honest count. Zeroed memory, 16-byte aligned (core_realloc: the part
+// beyond old_bytes is zero). Out of memory ends the program with one line and exit code 5 (nothing
+// sensible can follow): check sizes that come from files before asking. core_free(NULL) is fine.
 void *core_alloc(size_t bytes);
 void *core_realloc(void *block, size_t old_bytes, size_t new_bytes);
 void core_free(void *block);

@@ -6,7 +6,9 @@
 // CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)   // header: struct and _init prototype
 // CORE_COLUMNS_DEFINE(phys_bodies, PHYS_BODY_COLUMNS)    // one .c file
 //
-// gives `phys_bodies` with typed pointers `b.px[row]` and `b.set` (count, handles).
+// gives `phys_bodies` with typed pointers `b.px[row]` and `b.set` (count, handles). Rows from count
+// up to the next multiple of CORE_LANES are readable and writable padding: zero until a kernel
+// writes there, never hashed or saved.
 #ifndef CORE_COLUMNS_H
 #define CORE_COLUMNS_H
 
@@ -27,7 +29,8 @@ typedef struct core_columns {
     const core_column *column;
     uint32_t column_count;
     core_pool pool;     // rows [0, pool.count)
-    uint32_t committed; // rows backed by memory
+    uint32_t committed; // rows backed by memory, a multiple of CORE_LANES
+    void *base;         // private: the reserved range
     void *data[CORE_COLUMNS_MAX];
 } core_columns;
 
@@ -36,9 +39,11 @@ bool core_columns_init(core_columns *set, const char *name, const core_column *c
 void core_columns_release(core_columns *set);
 static inline uint32_t core_columns_count(const core_columns *set) { return set->pool.count; }
 
-// Adds a zeroed row; its row number is count - 1 after the call. Null + core_fail when full.
+// Adds a row, zero in every column; its row number is count - 1 after the call. Null + core_fail
+// when full.
 core_handle core_columns_add(core_columns *set);
-// Removes by swap with the last row. *hole and *last as in core_pool_remove (either may be NULL).
+// Removes by swap with the last row, whose old place becomes zero. False + core_fail for stale
+// handles. *hole and *last as in core_pool_remove (either may be NULL).
 bool core_columns_remove(core_columns *set, core_handle h, uint32_t *hole, uint32_t *last);
 uint32_t core_columns_row(const core_columns *set, core_handle h);
 core_handle core_columns_handle(const core_columns *set, uint32_t row);
@@ -52,7 +57,9 @@ void core_columns_hash(const core_columns *set, uint64_t *out);
 // out[count]: 16-bit checksum of each row over all STATE columns: finds the diverged object.
 void core_columns_row_hash(const core_columns *set, uint16_t *out);
 
-// Exact save (STATE columns, handles, free list). restore refuses sizes that do not fit, whole.
+// Exact save (STATE columns, handles, free list). restore refuses data that is truncated, corrupt
+// or of other columns, whole: the set is then unchanged. Other columns become zero: their owner
+// fills caches again. Little-endian; `data` needs no alignment.
 size_t core_columns_save_size(const core_columns *set);
 void core_columns_save(const core_columns *set, void *out);
 bool core_columns_restore(core_columns *set, const void *data, size_t size);

@@ -18,7 +18,7 @@ int core_jobs_threads(const core_jobs *jobs); // NULL: 1
 // begin/end: the chunk; chunk: its number; worker: 0..threads-1 (index for per-worker scratch).
 typedef void core_job_fn(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker);
 static inline uint32_t core_jobs_chunks(uint32_t count, uint32_t grain) {
-    return grain ? (count + grain - 1) / grain : 0;
+    return grain ? count / grain + (count % grain != 0) : 0;
 }
 // Runs fn over ceil(count/grain) chunks; returns when all are done. The caller works too. jobs NULL
 // or one chunk: serial, in order, on the caller. Calls do not nest: one from inside a job runs

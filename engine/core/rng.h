@@ -13,6 +13,8 @@ typedef struct core_rng {
 enum { CORE_RNG_SIM = 1, CORE_RNG_VIEW = 2, CORE_RNG_ENGINE = 3, CORE_RNG_MOD = 16 };
 
 core_rng core_rng_make(uint64_t seed, uint64_t stream);
+// Value `index` of a stream, without state.
+uint64_t core_rng_at(uint64_t seed, uint64_t stream, uint64_t index);
 uint64_t core_rng_u64(core_rng *rng);
 double core_rng_double(core_rng *rng);              // [0, 1), 53 bits
 float core_rng_float(core_rng *rng);                // [0, 1), 24 bits
