@@ -90,10 +90,10 @@ def python_test(path, corsac, limit):
     if not total:
         return Outcome(failed=1, text=f"{text}\n{ended(status, limit)}")
     bad = sum(int(n) for n in re.findall(r"(?:failures|errors|unexpected successes)=(\d+)", text))
-    skipped = re.findall(r"^(\w+ .*\.\.\. skipped .*)$", text, re.M)
+    skipped = re.findall(r"^(.* \.\.\. skipped .*)$", text, re.M)
     if status != 0 and bad == 0:
         bad = 1
-    return Outcome(max(0, int(total.group(1)) - bad - len(skipped)), bad, skipped, text)
+    return Outcome(max(0, int(total.group(1)) - bad - len(skipped)), bad, skipped, text[text.find("\n===="):])
 
 
 def head_of(scene):
