@@ -3,7 +3,7 @@
 #
 #   tools/setup.sh build       compiler and libraries; writes their flags for make, build/packages.mk
 #   tools/setup.sh gen         GL and EGL loaders (glad2), Unity test framework; writes build/gen
-#   tools/setup.sh GROUP...    programs that only some targets need: window, clang, lint, valgrind
+#   tools/setup.sh GROUP...    as build, and what only some targets need: window, clang, lint, valgrind
 #
 # Missing packages are installed by apt on Debian and Ubuntu, by sudo when not root. Elsewhere, or
 # where that is not possible, the names are printed and the exit code is 5.
@@ -56,6 +56,7 @@ window cmd:xvfb-run xvfb
 window cmd:xauth xauth
 clang cmd:clang clang
 clang clangrt: libclang-rt-dev
+lint cmd:g++ g++
 lint cmd:clang-format clang-format
 lint cmd:luacheck lua-check
 valgrind cmd:valgrind valgrind"
@@ -89,25 +90,21 @@ missing() {
     done <<<"$needs" || true
 }
 
-as_root() {
-    if [ "$(id -u)" = 0 ]; then
-        "$@"
-    else
-        have sudo && sudo -n "$@" </dev/null
-    fi
-}
-
 install_missing() {
-    local packages command
+    local packages command root=()
     packages=$(missing "$@")
     [ -n "$packages" ] || return 0
     have apt-get || fail "these packages are missing (names as on Debian): $packages"
     command="apt-get install -y --no-install-recommends $packages"
     [ "${NO_INSTALL:-}" != 1 ] || fail "packages are missing; install them with: $command"
+    if [ "$(id -u)" != 0 ]; then
+        have sudo && sudo -n true 2>/dev/null ||
+            fail "packages are missing, and sudo is not here or asks for a password; as root, run: $command"
+        root=(sudo -n)
+    fi
     say "installing $packages"
-    # shellcheck disable=SC2086 -- the list is meant to split
-    as_root env DEBIAN_FRONTEND=noninteractive sh -c "apt-get update && $command" >>"$log" 2>&1 ||
-        fail_with_log "could not install packages (log: $log); as root, run: $command"
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive sh -c "apt-get update && $command" \
+        </dev/null >>"$log" 2>&1 || fail_with_log "could not install packages; the log is $log"
     packages=$(missing "$@")
     [ -z "$packages" ] || fail "still missing after the installation: $packages"
 }
@@ -269,7 +266,7 @@ gen)
     loaders
     unity
     ;;
-window | clang | lint | valgrind) install_missing "$@" ;;
+window | clang | lint | valgrind) install_missing build "$@" ;;
 *)
     say "unknown group $1; known: build gen window clang lint valgrind"
     exit 2
