@@ -1,0 +1,137 @@
+// Narrow phase: refreshes the manifold of every near pair and carries impulses over by feature.
+#include "phys/world.h"
+
+#define NARROW_GRAIN 256u
+
+static void refresh_ball(phys_world *w, uint32_t i, float dt) {
+    phys_balls *c = &w->balls;
+    const phys_bodies *b = &w->bodies;
+    uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
+    uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
+    uint32_t ra = w->shapes.row[sa], rb = w->shapes.row[sb];
+    c->a[i] = ra;
+    c->b[i] = rb;
+    phys_geom ga = phys_shape_geom(w, sa), gb = phys_shape_geom(w, sb);
+    core_vec3 dv =
+        core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
+    float reach = PHYS_MARGIN + core_v3_length(dv) * dt;
+    phys_manifold m;
+    phys_collide(&ga, &gb, reach, &m);
+    // Far pairs count only when the gap can close within this step.
+    if (m.count != 0 &&
+        m.point[0].separation > PHYS_MARGIN + CORE_MAX(core_v3_dot(dv, m.normal), 0.0f) * dt) {
+        m.count = 0;
+    }
+    if (m.count == 0) {
+        c->separation[i] = 1e30f;
+        c->jn[i] = c->jt1[i] = c->jt2[i] = 0.0f;
+        return;
+    }
+    phys_put3(c->nx, c->ny, c->nz, i, m.normal);
+    c->separation[i] = m.point[0].separation;
+}
+
+static void narrow_balls(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const float *dt = ((void **)ctx)[1];
+    for (uint32_t i = begin; i < end; i++) {
+        refresh_ball(((void **)ctx)[0], i, *dt);
+    }
+}
+
+static void carry_point(const phys_point *old, phys_point *p) {
+    p->normal_impulse = old->normal_impulse;
+    p->tangent_impulse[0] = old->tangent_impulse[0];
+    p->tangent_impulse[1] = old->tangent_impulse[1];
+}
+
+// By feature first; a point whose feature is new takes over from the nearest one left.
+static void carry_impulses(const phys_manifold *old, phys_manifold *m) {
+    bool used[4] = {false}, done[4] = {false};
+    for (uint32_t k = 0; k < m->count; k++) {
+        for (uint32_t o = 0; o < old->count && !done[k]; o++) {
+            if (!used[o] && old->point[o].feature == m->point[k].feature) {
+                carry_point(&old->point[o], &m->point[k]);
+                used[o] = done[k] = true;
+            }
+        }
+    }
+    for (uint32_t k = 0; k < m->count; k++) {
+        uint32_t best = 4;
+        float least = 4.0f * PHYS_MARGIN * PHYS_MARGIN;
+        for (uint32_t o = 0; o < old->count && !done[k]; o++) {
+            core_vec3 d = core_v3_sub(old->point[o].ra, m->point[k].ra);
+            if (!used[o] && core_v3_dot(d, d) < least) {
+                least = core_v3_dot(d, d);
+                best = o;
+            }
+        }
+        if (best < 4) {
+            carry_point(&old->point[best], &m->point[k]);
+            used[best] = true;
+        }
+    }
+}
+
+static void refresh_contact(phys_world *w, uint32_t i, float dt) {
+    phys_contacts *c = &w->contacts;
+    const phys_bodies *b = &w->bodies;
+    uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
+    uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
+    uint32_t ra = w->shapes.row[sa], rb = w->shapes.row[sb];
+    c->a[i] = ra;
+    c->b[i] = rb;
+    phys_geom ga = phys_shape_geom(w, sa), gb = phys_shape_geom(w, sb);
+    core_vec3 dv =
+        core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
+    phys_manifold m = {0}, old = c->manifold[i];
+    phys_collide(&ga, &gb, PHYS_MARGIN + core_v3_length(dv) * dt, &m);
+    core_vec3 ca = phys_get3(b->cx, b->cy, b->cz, ra), cb = phys_get3(b->cx, b->cy, b->cz, rb);
+    for (uint32_t k = 0; k < m.count; k++) {
+        m.point[k].ra = core_v3_sub(m.point[k].ra, ca);
+        m.point[k].rb = core_v3_sub(m.point[k].rb, cb);
+    }
+    for (uint32_t k = m.count; k < 4; k++) {
+        m.point[k] = (phys_point){0};
+    }
+    carry_impulses(&old, &m);
+    c->manifold[i] = m;
+}
+
+static void narrow_contacts(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk,
+                            uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const float *dt = ((void **)ctx)[1];
+    for (uint32_t i = begin; i < end; i++) {
+        refresh_contact(((void **)ctx)[0], i, *dt);
+    }
+}
+
+void phys_narrow_update(phys_world *w, float dt) {
+    void *ctx[2] = {w, &dt};
+    uint32_t balls = core_columns_count(&w->balls.set);
+    uint32_t contacts = core_columns_count(&w->contacts.set);
+    core_jobs_for(w->jobs, balls, NARROW_GRAIN, narrow_balls, ctx);
+    core_jobs_for(w->jobs, contacts, NARROW_GRAIN, narrow_contacts, ctx);
+    w->touching = 0;
+    uint32_t n = core_columns_count(&w->bodies.set);
+    for (uint32_t i = 0; i < n; i++) {
+        w->bodies.touching[i] = 0;
+    }
+    for (uint32_t i = 0; i < balls; i++) {
+        if (w->balls.separation[i] < 1e29f) {
+            w->touching++;
+            w->bodies.touching[w->balls.a[i]]++;
+            w->bodies.touching[w->balls.b[i]]++;
+        }
+    }
+    for (uint32_t i = 0; i < contacts; i++) {
+        if (w->contacts.manifold[i].count != 0) {
+            w->touching++;
+            w->bodies.touching[w->contacts.a[i]]++;
+            w->bodies.touching[w->contacts.b[i]]++;
+        }
+    }
+}

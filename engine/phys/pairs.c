@@ -1,0 +1,217 @@
+// Which pairs of shapes are near each other: the pair map, and the birth and death of contacts.
+#include "phys/world.h"
+
+#include <string.h>
+
+CORE_COLUMNS_DEFINE(phys_balls, PHYS_BALL_COLUMNS)
+CORE_COLUMNS_DEFINE(phys_contacts, PHYS_CONTACT_COLUMNS)
+
+void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b) {
+    if (list->count == list->capacity) {
+        uint32_t grown = list->capacity ? list->capacity * 2 : 256;
+        list->pair =
+            core_realloc(list->pair, list->capacity * sizeof(phys_pair), grown * sizeof(phys_pair));
+        list->capacity = grown;
+    }
+    list->pair[list->count++] = (phys_pair){a, b};
+}
+
+bool phys_pair_wanted(const phys_world *w, uint32_t a, uint32_t b) {
+    uint32_t ra = w->shapes.row[a], rb = w->shapes.row[b];
+    const uint8_t *type = w->bodies.type;
+    return ra != rb && (type[ra] == PHYS_DYNAMIC || type[rb] == PHYS_DYNAMIC);
+}
+
+static uint64_t pair_key(uint32_t slot_a, uint32_t slot_b) {
+    return slot_a < slot_b ? (uint64_t)slot_a << 32 | slot_b : (uint64_t)slot_b << 32 | slot_a;
+}
+
+static uint32_t home(const phys_pair_map *m, uint64_t key) {
+    uint64_t x = key * 0x9e3779b97f4a7c15u;
+    return (uint32_t)(x >> 32) & (m->capacity - 1);
+}
+
+// Index of the key, or of the empty place where it would go.
+static uint32_t map_find(const phys_pair_map *m, uint64_t key) {
+    uint32_t i = home(m, key);
+    while (m->key[i] != 0 && m->key[i] != key) {
+        i = (i + 1) & (m->capacity - 1);
+    }
+    return i;
+}
+
+static void map_grow(phys_pair_map *m) {
+    phys_pair_map old = *m;
+    m->capacity = old.capacity ? old.capacity * 2 : 1024;
+    m->key = core_alloc(m->capacity * sizeof(uint64_t));
+    m->value = core_alloc(m->capacity * sizeof(uint32_t));
+    for (uint32_t i = 0; i < old.capacity; i++) {
+        if (old.key[i] != 0) {
+            uint32_t at = map_find(m, old.key[i]);
+            m->key[at] = old.key[i];
+            m->value[at] = old.value[i];
+        }
+    }
+    core_free(old.key);
+    core_free(old.value);
+}
+
+static void map_add(phys_pair_map *m, uint64_t key, uint32_t value) {
+    if ((m->count + 1) * 2 > m->capacity) {
+        map_grow(m);
+    }
+    uint32_t i = map_find(m, key);
+    m->key[i] = key;
+    m->value[i] = value;
+    m->count++;
+}
+
+// Backward-shift deletion (Knuth, TAOCP 3, 6.4, algorithm R): no tombstones.
+static void map_remove(phys_pair_map *m, uint64_t key) {
+    uint32_t mask = m->capacity - 1, hole = map_find(m, key);
+    for (uint32_t i = (hole + 1) & mask; m->key[i] != 0; i = (i + 1) & mask) {
+        uint32_t h = home(m, m->key[i]);
+        if (((i - h) & mask) >= ((i - hole) & mask)) {
+            m->key[hole] = m->key[i];
+            m->value[hole] = m->value[i];
+            hole = i;
+        }
+    }
+    m->key[hole] = 0;
+    m->count--;
+}
+
+// A ball: round about its centre of mass, so that contacts have no arm but the radius.
+static bool is_ball(const phys_world *w, uint32_t shape) {
+    const phys_shapes *s = &w->shapes;
+    return s->type[shape] == PHYS_SPHERE && s->next[shape] == 0 &&
+           (w->bodies.flags[s->row[shape]] & PHYS_BODY_ISOTROPIC) != 0 &&
+           w->bodies.shape[s->row[shape]] == phys_row_slot(&s->set, shape);
+}
+
+static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
+    const phys_shapes *s = &w->shapes;
+    uint32_t a = phys_slot_row(&s->set, slot_a), b = phys_slot_row(&s->set, slot_b);
+    bool swap = s->type[a] > s->type[b] ||
+                (s->type[a] == s->type[b] && w->bodies.type[s->row[a]] != PHYS_DYNAMIC);
+    uint32_t first = swap ? b : a, second = swap ? a : b;
+    uint32_t sa = phys_row_slot(&s->set, first), sb = phys_row_slot(&s->set, second);
+    uint64_t key = pair_key(slot_a, slot_b);
+    if (w->bodies.type[s->row[first]] == PHYS_DYNAMIC && is_ball(w, first) &&
+        (w->bodies.type[s->row[second]] != PHYS_DYNAMIC || is_ball(w, second))) {
+        core_handle h = core_columns_add(&w->balls.set);
+        uint32_t i = core_columns_count(&w->balls.set) - 1;
+        w->balls.sa[i] = sa;
+        w->balls.sb[i] = sb;
+        w->balls.stamp[i] = w->stamp;
+        map_add(&w->map, key, h.index << 1 | 1u);
+    } else {
+        core_handle h = core_columns_add(&w->contacts.set);
+        uint32_t i = core_columns_count(&w->contacts.set) - 1;
+        w->contacts.sa[i] = sa;
+        w->contacts.sb[i] = sb;
+        w->contacts.stamp[i] = w->stamp;
+        map_add(&w->map, key, h.index << 1);
+    }
+}
+
+static void contact_remove(phys_world *w, core_columns *set, const uint32_t *sa, const uint32_t *sb,
+                           uint32_t row) {
+    map_remove(&w->map, pair_key(sa[row], sb[row]));
+    core_columns_remove(set, core_columns_handle(set, row), NULL, NULL);
+}
+
+// Bottom-up merge sort of keys: no allocation, one order.
+static void sort_keys(uint64_t *key, uint64_t *tmp, uint32_t n) {
+    for (uint32_t width = 1; width < n; width *= 2) {
+        for (uint32_t lo = 0; lo < n; lo += 2 * width) {
+            uint32_t mid = CORE_MIN(lo + width, n), hi = CORE_MIN(lo + 2 * width, n);
+            uint32_t i = lo, j = mid;
+            for (uint32_t k = lo; k < hi; k++) {
+                tmp[k] = i < mid && (j >= hi || key[i] <= key[j]) ? key[i++] : key[j++];
+            }
+        }
+        memcpy(key, tmp, n * sizeof *key);
+    }
+}
+
+static void remove_unstamped(phys_world *w) {
+    for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
+        if (w->balls.stamp[i] != w->stamp) {
+            contact_remove(w, &w->balls.set, w->balls.sa, w->balls.sb, i);
+        }
+    }
+    for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
+        if (w->contacts.stamp[i] != w->stamp) {
+            contact_remove(w, &w->contacts.set, w->contacts.sa, w->contacts.sb, i);
+        }
+    }
+}
+
+// Births are sorted by pair, so that rows do not depend on which broad phase found them.
+void phys_pairs_update(phys_world *w) {
+    size_t mark = core_arena_mark(&w->scratch);
+    uint64_t *fresh = CORE_ARENA_ARRAY(&w->scratch, uint64_t, w->pairs.count + 1);
+    uint64_t *tmp = CORE_ARENA_ARRAY(&w->scratch, uint64_t, w->pairs.count + 1);
+    uint32_t fresh_count = 0;
+    w->stamp++;
+    if (w->map.capacity == 0) {
+        map_grow(&w->map);
+    }
+    for (uint32_t i = 0; i < w->pairs.count; i++) {
+        uint64_t key = pair_key(phys_row_slot(&w->shapes.set, w->pairs.pair[i].a),
+                                phys_row_slot(&w->shapes.set, w->pairs.pair[i].b));
+        uint32_t at = map_find(&w->map, key);
+        if (w->map.key[at] == 0) {
+            fresh[fresh_count++] = key;
+            continue;
+        }
+        uint32_t value = w->map.value[at];
+        if (value & 1u) {
+            w->balls.stamp[phys_slot_row(&w->balls.set, value >> 1)] = w->stamp;
+        } else {
+            w->contacts.stamp[phys_slot_row(&w->contacts.set, value >> 1)] = w->stamp;
+        }
+    }
+    remove_unstamped(w);
+    sort_keys(fresh, tmp, fresh_count);
+    for (uint32_t i = 0; i < fresh_count; i++) {
+        contact_add(w, (uint32_t)(fresh[i] >> 32), (uint32_t)fresh[i]);
+    }
+    core_arena_rewind(&w->scratch, mark);
+}
+
+void phys_pairs_drop_shape(phys_world *w, uint32_t slot) {
+    for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
+        if (w->balls.sa[i] == slot || w->balls.sb[i] == slot) {
+            contact_remove(w, &w->balls.set, w->balls.sa, w->balls.sb, i);
+        }
+    }
+    for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
+        if (w->contacts.sa[i] == slot || w->contacts.sb[i] == slot) {
+            contact_remove(w, &w->contacts.set, w->contacts.sa, w->contacts.sb, i);
+        }
+    }
+}
+
+void phys_pairs_rebuild_map(phys_world *w) {
+    w->map.count = 0;
+    if (w->map.capacity != 0) {
+        memset(w->map.key, 0, w->map.capacity * sizeof(uint64_t));
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
+        map_add(&w->map, pair_key(w->balls.sa[i], w->balls.sb[i]),
+                phys_row_slot(&w->balls.set, i) << 1 | 1u);
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->contacts.set); i++) {
+        map_add(&w->map, pair_key(w->contacts.sa[i], w->contacts.sb[i]),
+                phys_row_slot(&w->contacts.set, i) << 1);
+    }
+}
+
+void phys_pairs_release(phys_world *w) {
+    core_free(w->map.key);
+    core_free(w->map.value);
+    core_free(w->pairs.pair);
+    core_free(w->order);
+}

@@ -1,0 +1,209 @@
+// Shapes: what a description must fulfil, mass and inertia, bounds.
+#include "phys/world.h"
+
+CORE_COLUMNS_DEFINE(phys_shapes, PHYS_SHAPE_COLUMNS)
+
+static const char *const shape_names[] = {"sphere",   "box",  "plane", "capsule",
+                                          "cylinder", "hull", "mesh"};
+
+phys_shape_desc phys_shape_desc_default(phys_shape_type type) {
+    return (phys_shape_desc){.type = type,
+                             .rotation = core_quat_identity(),
+                             .normal = {0, 1, 0},
+                             .density = 1000.0f,
+                             .friction = 0.5f,
+                             .cookie = PHYS_SHAPE_COOKIE};
+}
+
+static bool check_size(const char *shape, const char *field, float value) {
+    if (value >= 1e-4f && value <= 1e5f) {
+        return true;
+    }
+    return core_fail("phys shape %s: %s is %g, expected 0.0001..100000 m", shape, field,
+                     (double)value);
+}
+
+static bool check_material(const phys_shape_desc *s, const char *name) {
+    if (!(s->density >= 0.0f && s->density <= 1e9f)) {
+        return core_fail("phys shape %s: density is %g, expected 0 (default) or up to 1e9 kg/m^3",
+                         name, (double)s->density);
+    }
+    if (!(s->friction >= 0.0f && s->friction <= 1e6f)) {
+        return core_fail("phys shape %s: friction is %g, expected 0 or more", name,
+                         (double)s->friction);
+    }
+    if (!(s->restitution >= 0.0f && s->restitution <= 1.0f)) {
+        return core_fail("phys shape %s: restitution is %g, expected 0..1", name,
+                         (double)s->restitution);
+    }
+    return true;
+}
+
+bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {
+    if (s->cookie != PHYS_SHAPE_COOKIE) {
+        return core_fail("phys shape: description was not made by phys_shape_desc_default");
+    }
+    if ((unsigned)s->type > PHYS_PLANE) {
+        return core_fail("phys shape: type %d is unknown here, expected sphere, box or plane",
+                         (int)s->type);
+    }
+    const char *name = shape_names[s->type];
+    if (!phys_finite3(s->position) || core_v3_length(s->position) > PHYS_FAR) {
+        return core_fail("phys shape %s: position (%g, %g, %g) is not finite or too far", name,
+                         (double)s->position.x, (double)s->position.y, (double)s->position.z);
+    }
+    switch (s->type) {
+    case PHYS_SPHERE:
+        if (!check_size(name, "radius", s->radius)) {
+            return false;
+        }
+        break;
+    case PHYS_BOX:
+        if (!check_size(name, "half.x", s->half.x) || !check_size(name, "half.y", s->half.y) ||
+            !check_size(name, "half.z", s->half.z)) {
+            return false;
+        }
+        break;
+    default:
+        if (!(core_absf(core_v3_length(s->normal) - 1.0f) < 1e-3f)) {
+            return core_fail("phys shape plane: normal (%g, %g, %g) is not of length 1",
+                             (double)s->normal.x, (double)s->normal.y, (double)s->normal.z);
+        }
+        if (body != PHYS_STATIC) {
+            return core_fail("phys shape plane: only static bodies can have one");
+        }
+    }
+    return check_material(s, name);
+}
+
+static phys_mass mass_about_center(const phys_shape_desc *s) {
+    float density = s->density > 0.0f ? s->density : 1000.0f;
+    phys_mass m = {0};
+    if (s->type == PHYS_SPHERE) {
+        m.mass = density * (4.0f / 3.0f) * CORE_PI_F * s->radius * s->radius * s->radius;
+        float i = 0.4f * m.mass * s->radius * s->radius;
+        m.inertia = (phys_mat3){{i, 0, 0}, {0, i, 0}, {0, 0, i}};
+    } else if (s->type == PHYS_BOX) {
+        core_vec3 h = s->half;
+        m.mass = density * 8.0f * h.x * h.y * h.z;
+        float k = m.mass / 3.0f;
+        m.inertia = (phys_mat3){{k * (h.y * h.y + h.z * h.z), 0, 0},
+                                {0, k * (h.x * h.x + h.z * h.z), 0},
+                                {0, 0, k * (h.x * h.x + h.y * h.y)}};
+    }
+    return m;
+}
+
+phys_mass phys_shape_mass(const phys_shape_desc *s) {
+    phys_mass m = mass_about_center(s);
+    phys_mat3 r = phys_quat_mat(core_quat_normalize(s->rotation));
+    // R I R^T, row by row.
+    const core_vec3 *row = &r.x, *in = &m.inertia.x;
+    phys_mat3 out;
+    core_vec3 *o = &out.x;
+    for (int i = 0; i < 3; i++) {
+        core_vec3 t = core_v3_add(
+            core_v3_scale(in[0], row[i].x),
+            core_v3_add(core_v3_scale(in[1], row[i].y), core_v3_scale(in[2], row[i].z)));
+        o[i] = core_v3(core_v3_dot(t, r.x), core_v3_dot(t, r.y), core_v3_dot(t, r.z));
+    }
+    m.inertia = out;
+    m.center = s->position;
+    return m;
+}
+
+// Cyclic Jacobi (Golub, Van Loan, Matrix Computations, 8.5) on doubles.
+core_vec3 phys_principal(const phys_mat3 *inertia, core_quat *frame) {
+    double a[3][3] = {{inertia->x.x, inertia->x.y, inertia->x.z},
+                      {inertia->y.x, inertia->y.y, inertia->y.z},
+                      {inertia->z.x, inertia->z.y, inertia->z.z}};
+    double limit = 1e-12 * (a[0][0] + a[1][1] + a[2][2]);
+    core_quat q = core_quat_identity();
+    for (int sweep = 0; sweep < 24; sweep++) {
+        for (int p = 0; p < 2; p++) {
+            for (int r = p + 1; r < 3; r++) {
+                if (!(a[p][r] > limit || a[p][r] < -limit)) {
+                    continue;
+                }
+                double theta = (a[r][r] - a[p][p]) / (2.0 * a[p][r]);
+                double at = theta < 0 ? -theta : theta;
+                double t = 1.0 / (at + core_sqrt(theta * theta + 1.0));
+                t = theta < 0 ? -t : t;
+                double c = 1.0 / core_sqrt(t * t + 1.0), s = t * c;
+                for (int k = 0; k < 3; k++) {
+                    double kp = a[k][p], kr = a[k][r];
+                    a[k][p] = c * kp - s * kr;
+                    a[k][r] = s * kp + c * kr;
+                }
+                for (int k = 0; k < 3; k++) {
+                    double pk = a[p][k], rk = a[r][k];
+                    a[p][k] = c * pk - s * rk;
+                    a[r][k] = s * pk + c * rk;
+                }
+                // The rotation's axis is the third one; its sign follows the order of p and r.
+                float half_c = (float)core_sqrt(0.5 * (1.0 + c));
+                float half_s = (float)(0.5 * s) / half_c;
+                core_quat turn = {0, 0, 0, half_c};
+                if (p == 0 && r == 1) {
+                    turn.z = -half_s;
+                } else if (p == 0) {
+                    turn.y = half_s;
+                } else {
+                    turn.x = -half_s;
+                }
+                q = phys_quat_unit(phys_quat_mul(q, turn));
+            }
+        }
+    }
+    *frame = q;
+    return core_v3((float)a[0][0], (float)a[1][1], (float)a[2][2]);
+}
+
+phys_geom phys_shape_geom(const phys_world *w, uint32_t i) {
+    const phys_shapes *s = &w->shapes;
+    const phys_bodies *b = &w->bodies;
+    uint32_t row = s->row[i];
+    core_quat q = phys_body_quat(b, row);
+    core_vec3 o = phys_get3(b->px, b->py, b->pz, row);
+    phys_geom g = {.type = (phys_shape_type)s->type[i],
+                   .position = core_v3_add(o, phys_rotate(q, s->position[i])),
+                   .rotation = phys_quat_mul(q, s->rotation[i]),
+                   .half = s->half[i],
+                   .radius = s->radius[i]};
+    g.axes = phys_quat_mat(g.rotation);
+    return g;
+}
+
+core_aabb phys_geom_bounds(const phys_geom *g) {
+    core_vec3 e = core_v3(g->radius, g->radius, g->radius);
+    if (g->type == PHYS_BOX) {
+        e = core_v3(core_v3_dot(phys_abs3(g->axes.x), g->half),
+                    core_v3_dot(phys_abs3(g->axes.y), g->half),
+                    core_v3_dot(phys_abs3(g->axes.z), g->half));
+    } else if (g->type == PHYS_PLANE) {
+        e = core_v3(1e9f, 1e9f, 1e9f);
+    }
+    return (core_aabb){core_v3_sub(g->position, e), core_v3_add(g->position, e)};
+}
+
+// Bounds hold the shape for the whole step: grown by the margin and by the way it may travel.
+void phys_shapes_update_bounds(phys_world *w, float dt) {
+    phys_shapes *s = &w->shapes;
+    const phys_bodies *b = &w->bodies;
+    uint32_t n = core_columns_count(&s->set);
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t row = phys_slot_row(&b->set, s->body[i]);
+        s->row[i] = row;
+        phys_geom g = phys_shape_geom(w, i);
+        core_aabb box = phys_geom_bounds(&g);
+        core_vec3 v = phys_abs3(phys_get3(b->vx, b->vy, b->vz, row));
+        float grow = PHYS_MARGIN;
+        core_vec3 way = b->type[row] == PHYS_STATIC ? core_v3(0, 0, 0) : core_v3_scale(v, dt);
+        s->x0[i] = box.min.x - grow - way.x;
+        s->y0[i] = box.min.y - grow - way.y;
+        s->z0[i] = box.min.z - grow - way.z;
+        s->x1[i] = box.max.x + grow + way.x;
+        s->y1[i] = box.max.y + grow + way.y;
+        s->z1[i] = box.max.z + grow + way.z;
+    }
+}

@@ -1,0 +1,256 @@
+// The world: creation, settings by name, and the order of a step.
+#include "phys/world.h"
+
+#include "core/nearest.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const phys_broad_method *const broads[] = {&phys_broad_sap, &phys_broad_brute};
+static const phys_solver_method *const solvers[] = {&phys_solver_sequential};
+
+phys_world_desc phys_world_desc_default(void) {
+    return (phys_world_desc){.gravity = {0.0f, -9.81f, 0.0f}, .cookie = PHYS_WORLD_COOKIE};
+}
+
+const char *const *phys_method_names(const char *kind) {
+    static const char *const solver[] = {"sequential", NULL};
+    static const char *const broad[] = {"auto", "sap", "brute", NULL};
+    static const char *const none[] = {NULL};
+    return strcmp(kind, "solver") == 0 ? solver : strcmp(kind, "broad") == 0 ? broad : none;
+}
+
+static bool pick_broad(phys_world *w, const char *name) {
+    if (strcmp(name, "auto") == 0) {
+        w->broad = broads[0];
+        return true;
+    }
+    for (size_t i = 0; i < CORE_COUNT_OF(broads); i++) {
+        if (strcmp(name, broads[i]->name) == 0) {
+            w->broad = broads[i];
+            return true;
+        }
+    }
+    return core_fail("phys setting broad: '%s' is unknown, expected auto, sap or brute", name);
+}
+
+static bool pick_solver(phys_world *w, const char *name) {
+    for (size_t i = 0; i < CORE_COUNT_OF(solvers); i++) {
+        if (strcmp(name, solvers[i]->name) == 0) {
+            w->solver = solvers[i];
+            return true;
+        }
+    }
+    return core_fail("phys setting solver: '%s' is unknown, expected sequential", name);
+}
+
+static bool check_desc(const phys_world_desc *d) {
+    if (d->cookie != PHYS_WORLD_COOKIE) {
+        return core_fail("phys world: description was not made by phys_world_desc_default");
+    }
+    if (!phys_finite3(d->gravity)) {
+        return core_fail("phys world: gravity (%g, %g, %g) is not finite", (double)d->gravity.x,
+                         (double)d->gravity.y, (double)d->gravity.z);
+    }
+    if (d->substeps < 0 || d->substeps > 64) {
+        return core_fail("phys world: substeps is %d, expected 0 (default) or 1..64", d->substeps);
+    }
+    if (d->iterations < 0 || d->iterations > 256) {
+        return core_fail("phys world: iterations is %d, expected 0 (default) or 1..256",
+                         d->iterations);
+    }
+    return true;
+}
+
+static bool make_storage(phys_world *w, uint32_t max_bodies) {
+    uint32_t pairs = max_bodies > UINT32_MAX / 32 ? UINT32_MAX / 2 : max_bodies * 16;
+    return phys_bodies_init(&w->bodies, "phys.bodies", max_bodies) &&
+           phys_shapes_init(&w->shapes, "phys.shapes", max_bodies * 2) &&
+           phys_balls_init(&w->balls, "phys.balls", pairs) &&
+           phys_contacts_init(&w->contacts, "phys.contacts", pairs) &&
+           core_arena_init(&w->scratch, "phys.scratch", (size_t)16 << 30);
+}
+
+phys_world *phys_world_create(const phys_world_desc *d) {
+    if (!check_desc(d)) {
+        return NULL;
+    }
+    phys_world *w = core_alloc(sizeof *w);
+    w->jobs = d->jobs;
+    w->metrics = d->metrics;
+    w->gravity = d->gravity;
+    if (d->gravity.x == 0.0f && d->gravity.y == 0.0f && d->gravity.z == 0.0f && !d->zero_gravity) {
+        w->gravity = core_v3(0.0f, -9.81f, 0.0f);
+    }
+    if (d->zero_gravity) {
+        w->gravity = core_v3(0, 0, 0);
+    }
+    w->substeps = d->substeps;
+    w->iterations = d->iterations;
+    if (!pick_broad(w, d->broad ? d->broad : "auto") ||
+        !pick_solver(w, d->solver ? d->solver : solvers[0]->name) ||
+        !make_storage(w, d->max_bodies ? d->max_bodies : 1u << 20)) {
+        phys_world_destroy(w);
+        return NULL;
+    }
+    return w;
+}
+
+void phys_world_destroy(phys_world *w) {
+    if (w == NULL) {
+        return;
+    }
+    core_columns_release(&w->bodies.set);
+    core_columns_release(&w->shapes.set);
+    core_columns_release(&w->balls.set);
+    core_columns_release(&w->contacts.set);
+    core_arena_release(&w->scratch);
+    phys_pairs_release(w);
+    core_free(w);
+}
+
+void phys_world_set_gravity(phys_world *w, core_vec3 g) {
+    if (phys_finite3(g)) {
+        w->gravity = g;
+        w->measured = false;
+        return;
+    }
+    core_fail("phys world: gravity (%g, %g, %g) is not finite", (double)g.x, (double)g.y,
+              (double)g.z);
+}
+core_vec3 phys_world_gravity(const phys_world *w) { return w->gravity; }
+
+static bool set_int(const char *name, const char *value, int lo, int hi, int *out) {
+    char *end;
+    long v = strtol(value, &end, 10);
+    if (end == value || *end != '\0' || v < lo || v > hi) {
+        return core_fail("phys setting %s: '%s', expected a whole number %d..%d", name, value, lo,
+                         hi);
+    }
+    *out = (int)v;
+    return true;
+}
+
+bool phys_world_set(phys_world *w, const char *name, const char *value) {
+    static const char *const names[] = {"broad", "iterations", "solver", "substeps"};
+    if (strcmp(name, "broad") == 0) {
+        return pick_broad(w, value);
+    }
+    if (strcmp(name, "solver") == 0) {
+        return pick_solver(w, value);
+    }
+    if (strcmp(name, "substeps") == 0) {
+        return set_int(name, value, 0, 64, &w->substeps);
+    }
+    if (strcmp(name, "iterations") == 0) {
+        return set_int(name, value, 0, 256, &w->iterations);
+    }
+    const char *near = core_nearest(name, names, CORE_COUNT_OF(names));
+    return core_fail("phys setting '%s' is unknown%s%s", name, near ? ", did you mean " : "",
+                     near ? near : "");
+}
+
+// A body that is no longer finite is stopped where it last made sense (its origin is still that of
+// the step before) and named; the rest goes on.
+static void isolate(phys_bodies *b, uint32_t i) {
+    core_handle h = core_columns_handle(&b->set, i);
+    core_fail("phys body %u:%u is no longer finite: it is frozen and takes no more part", h.index,
+              h.generation);
+    b->flags[i] |= PHYS_BODY_LOST;
+    b->type[i] = PHYS_STATIC;
+    b->im[i] = b->ix[i] = b->iy[i] = b->iz[i] = 0.0f;
+    phys_put3(b->vx, b->vy, b->vz, i, core_v3(0, 0, 0));
+    phys_put3(b->wx, b->wy, b->wz, i, core_v3(0, 0, 0));
+    core_quat q = core_quat_normalize(phys_body_quat(b, i));
+    b->qx[i] = q.x;
+    b->qy[i] = q.y;
+    b->qz[i] = q.z;
+    b->qw[i] = q.w;
+    phys_body_sync_center(b, i);
+}
+
+static void isolate_lost(phys_world *w) {
+    phys_bodies *b = &w->bodies;
+    for (uint32_t i = 0; i < core_columns_count(&b->set); i++) {
+        float sum = b->cx[i] + b->cy[i] + b->cz[i] + b->qx[i] + b->qy[i] + b->qz[i] + b->qw[i] +
+                    b->vx[i] + b->vy[i] + b->vz[i] + b->wx[i] + b->wy[i] + b->wz[i];
+        if (!phys_finite(sum)) {
+            isolate(b, i);
+        }
+    }
+}
+
+static void finish_step(phys_world *w, float dt) {
+    phys_bodies *b = &w->bodies;
+    isolate_lost(w);
+    for (uint32_t i = 0; i < core_columns_count(&b->set); i++) {
+        core_vec3 f = b->force[i];
+        if (b->type[i] == PHYS_DYNAMIC && (f.x != 0.0f || f.y != 0.0f || f.z != 0.0f)) {
+            w->work += (double)core_v3_dot(f, phys_get3(b->vx, b->vy, b->vz, i)) * (double)dt;
+        }
+        if (b->type[i] != PHYS_STATIC) {
+            phys_body_sync_origin(b, i);
+        }
+    }
+    phys_clear_forces(w);
+    w->time += (double)dt;
+}
+
+bool phys_world_step(phys_world *w, float dt) {
+    if (!(dt > 0.0f && dt <= 1.0f)) {
+        return core_fail("phys step: dt is %g s, expected more than 0 and at most 1", (double)dt);
+    }
+    core_arena_reset(&w->scratch);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS_BROAD);
+    phys_shapes_update_bounds(w, dt);
+    w->broad->find(w);
+    phys_pairs_update(w);
+    core_stage_end(w->metrics, CORE_STAGE_PHYS_BROAD);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS_NARROW);
+    phys_narrow_update(w, dt);
+    core_stage_end(w->metrics, CORE_STAGE_PHYS_NARROW);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    w->solver->step(w, dt);
+    core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    finish_step(w, dt);
+    core_stage_end(w->metrics, CORE_STAGE_PHYS);
+    return true;
+}
+
+int phys_world_state(const phys_world *w, const core_columns **out, int capacity) {
+    const core_columns *set[] = {&w->bodies.set, &w->shapes.set, &w->balls.set, &w->contacts.set};
+    for (int i = 0; out != NULL && i < capacity && i < (int)CORE_COUNT_OF(set); i++) {
+        out[i] = set[i];
+    }
+    return (int)CORE_COUNT_OF(set);
+}
+
+size_t phys_world_bytes(const phys_world *w) {
+    return sizeof *w + core_columns_bytes(&w->bodies.set) + core_columns_bytes(&w->shapes.set) +
+           core_columns_bytes(&w->balls.set) + core_columns_bytes(&w->contacts.set) +
+           w->scratch.committed + w->map.capacity * (sizeof(uint64_t) + sizeof(uint32_t)) +
+           w->pairs.capacity * sizeof(phys_pair) + w->order_capacity * sizeof(uint32_t);
+}
+
+void phys_world_counts(const phys_world *w, core_metrics *m) {
+    uint32_t n = phys_body_count(w), awake = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        awake += w->bodies.type[i] != PHYS_STATIC;
+    }
+    core_metrics_set(m, CORE_COUNT_BODIES, n);
+    core_metrics_set(m, CORE_COUNT_AWAKE, awake);
+    core_metrics_set(m, CORE_COUNT_SHAPES, core_columns_count(&w->shapes.set));
+    core_metrics_set(m, CORE_COUNT_PAIRS,
+                     core_columns_count(&w->balls.set) + core_columns_count(&w->contacts.set));
+    core_metrics_set(m, CORE_COUNT_CONTACTS, w->touching);
+    core_metrics_set(m, CORE_COUNT_JOINTS, 0);
+    core_metrics_set(m, CORE_COUNT_ISLANDS, 0);
+    core_metrics_set(m, CORE_COUNT_TRIGGERS, 0);
+}
+
+phys_pose_view phys_world_poses(const phys_world *w) {
+    const phys_bodies *b = &w->bodies;
+    return (phys_pose_view){b->px, b->py, b->pz, b->qx, b->qy, b->qz, b->qw,
+                            b->vx, b->vy, b->vz, b->wx, b->wy, b->wz, phys_body_count(w)};
+}

@@ -1,0 +1,228 @@
+// The world's storage: what every file of this room reads. Not public.
+#ifndef PHYS_WORLD_H
+#define PHYS_WORLD_H
+
+#include "phys/phys.h"
+#include "phys/vec.h"
+
+#include "core/memory.h"
+
+enum {
+    PHYS_WORLD_COOKIE = 0x70776f31,
+    PHYS_BODY_COOKIE = 0x70626f31,
+    PHYS_SHAPE_COOKIE = 0x70736831
+};
+
+// Distances in metres. Contacts are kept when closer than the margin, so that a body about to touch
+// is slowed before it sinks in.
+#define PHYS_MARGIN 0.02f
+
+#define PHYS_FAR        1e6f // positions beyond are refused
+#define PHYS_BOUNCE_MIN 0.2f // m/s: slower impacts do not bounce (they would never come to rest)
+
+enum {
+    PHYS_BODY_FRAME = 1u,     // principal axes differ from the body's: `iq*` is used
+    PHYS_BODY_ISOTROPIC = 2u, // equal moments (balls): no gyroscopic term, no inertia rotation
+    PHYS_BODY_LOST = 4u       // became non-finite: frozen, named once, left out
+};
+
+// px: body origin, cx: centre of mass, lc: centre in the body's frame. im, ix: inverse mass and
+// principal inverse moments; iq: body to principal frame. ex, tx: force and torque of the next
+// step.
+#define PHYS_BODY_COLUMNS(X)                                                                       \
+    X(float, px, CORE_COLUMN_STATE)                                                                \
+    X(float, py, CORE_COLUMN_STATE)                                                                \
+    X(float, pz, CORE_COLUMN_STATE) X(float, qx, CORE_COLUMN_STATE) X(                             \
+        float, qy, CORE_COLUMN_STATE) X(float, qz, CORE_COLUMN_STATE)                              \
+        X(float, qw, CORE_COLUMN_STATE) X(float, vx, CORE_COLUMN_STATE) X(                         \
+            float, vy, CORE_COLUMN_STATE) X(float, vz, CORE_COLUMN_STATE)                          \
+            X(float, wx, CORE_COLUMN_STATE) X(float, wy, CORE_COLUMN_STATE) X(                     \
+                float, wz, CORE_COLUMN_STATE) X(float, cx, CORE_COLUMN_STATE) X(float, cy,         \
+                                                                                CORE_COLUMN_STATE) \
+                X(float, cz, CORE_COLUMN_STATE) X(float, lcx, CORE_COLUMN_STATE) X(                \
+                    float, lcy, CORE_COLUMN_STATE) X(float, lcz, CORE_COLUMN_STATE)                \
+                    X(float, im, CORE_COLUMN_STATE) X(float, ix, CORE_COLUMN_STATE) X(             \
+                        float, iy, CORE_COLUMN_STATE) X(float, iz, CORE_COLUMN_STATE)              \
+                        X(core_quat, iq, CORE_COLUMN_STATE) X(core_vec3, force, CORE_COLUMN_STATE) \
+                            X(core_vec3, torque,                                                   \
+                              CORE_COLUMN_STATE) X(float, linear_damping, CORE_COLUMN_STATE)       \
+                                X(float, angular_damping,                                          \
+                                  CORE_COLUMN_STATE) X(float, gravity_scale, CORE_COLUMN_STATE)    \
+                                    X(uint8_t, type,                                               \
+                                      CORE_COLUMN_STATE) X(uint8_t, layer, CORE_COLUMN_STATE)      \
+                                        X(uint16_t, flags, CORE_COLUMN_STATE)                      \
+                                            X(uint32_t, shape,                                     \
+                                              CORE_COLUMN_STATE) /* first shape's slot; 0: none */ \
+        X(uint64_t, user, CORE_COLUMN_STATE) X(uint32_t, touching, 0) /* contacts of this step */  \
+        X(core_vec3, seen, 0) X(uint8_t, through, 0) /* accuracy: place at the last sample */
+CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
+
+// body: slot (handle index) of the owner. next: slot of the body's next shape. x0..z1: bounds,
+// grown by the margin.
+#define PHYS_SHAPE_COLUMNS(X)                                                                      \
+    X(uint32_t, body, CORE_COLUMN_STATE)                                                           \
+    X(uint32_t, next, CORE_COLUMN_STATE)                                                           \
+    X(uint32_t, type, CORE_COLUMN_STATE) X(core_vec3, half, CORE_COLUMN_STATE)                     \
+        X(float, radius, CORE_COLUMN_STATE) X(core_vec3, position, CORE_COLUMN_STATE)              \
+            X(core_quat, rotation, CORE_COLUMN_STATE) X(float, friction, CORE_COLUMN_STATE)        \
+                X(float, restitution, CORE_COLUMN_STATE) X(float, x0, CORE_COLUMN_STATE)           \
+                    X(float, y0, CORE_COLUMN_STATE) X(float, z0, CORE_COLUMN_STATE)                \
+                        X(float, x1, CORE_COLUMN_STATE) X(float, y1, CORE_COLUMN_STATE)            \
+                            X(float, z1, CORE_COLUMN_STATE)                                        \
+                                X(uint32_t, row, 0) /* the owner's row, of this step */
+CORE_COLUMNS_DECLARE(phys_shapes, PHYS_SHAPE_COLUMNS)
+
+// One contact point. ra, rb: from the centres of mass, world axes, at the start of the step.
+typedef struct phys_point {
+    core_vec3 ra, rb;
+    float separation;                         // m, < 0: overlap
+    float normal_impulse, tangent_impulse[2]; // N s, carried from step to step
+    uint32_t feature;                         // which corner, edge or face made it
+} phys_point;
+typedef struct phys_manifold {
+    core_vec3 normal; // unit, from a to b
+    uint32_t count;   // 0..4
+    phys_point point[4];
+} phys_manifold;
+
+// Pairs whose shapes can touch in one point without an arm on either side (ball on ball, ball on
+// anything static) keep 1 point; all others up to 4. Slots are stable, rows are of this step.
+#define PHYS_BALL_COLUMNS(X)                                                                       \
+    X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
+    X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
+    X(float, jn, CORE_COLUMN_STATE) X(float, jt1, CORE_COLUMN_STATE)                               \
+        X(float, jt2, CORE_COLUMN_STATE) X(float, nx, 0) X(float, ny, 0) X(float, nz, 0)           \
+            X(float, separation, 0) X(uint32_t, a, 0) X(uint32_t, b, 0) X(uint32_t, stamp, 0)
+CORE_COLUMNS_DECLARE(phys_balls, PHYS_BALL_COLUMNS)
+#define PHYS_CONTACT_COLUMNS(X)                                                                    \
+    X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
+    X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
+    X(phys_manifold, manifold, CORE_COLUMN_STATE) X(uint32_t, a, 0) X(uint32_t, b, 0)              \
+        X(uint32_t, stamp, 0)
+CORE_COLUMNS_DECLARE(phys_contacts, PHYS_CONTACT_COLUMNS)
+
+// Finds the contact of a pair of shape slots. Open addressing, rebuilt from the columns when
+// needed.
+typedef struct phys_pair_map {
+    uint64_t *key;   // slot a << 32 | slot b, a < b; 0: empty
+    uint32_t *value; // contact slot << 1 | kind (1: ball)
+    uint32_t capacity, count;
+} phys_pair_map;
+
+typedef struct phys_pair { // shape rows
+    uint32_t a, b;
+} phys_pair;
+typedef struct phys_pair_list {
+    phys_pair *pair;
+    uint32_t count, capacity;
+} phys_pair_list;
+
+typedef struct phys_broad_method {
+    const char *name;
+    void (*find)(phys_world *world); // fills world->pairs from the shapes' bounds
+} phys_broad_method;
+typedef struct phys_solver_method {
+    const char *name;
+    int substeps, iterations; // defaults
+    void (*step)(phys_world *world, float dt);
+} phys_solver_method;
+
+struct phys_world {
+    core_jobs *jobs;
+    core_metrics *metrics;
+    core_vec3 gravity;
+    const phys_broad_method *broad;
+    const phys_solver_method *solver;
+    int substeps, iterations; // 0: the solver's default
+    phys_bodies bodies;
+    phys_shapes shapes;
+    phys_balls balls;
+    phys_contacts contacts;
+    phys_pair_map map;
+    phys_pair_list pairs;
+    uint32_t *order; // sweep order of shape rows, kept between steps
+    uint32_t order_count, order_capacity;
+    core_arena scratch; // of one step
+    uint32_t stamp;     // number of the broad phase, marks living pairs
+    uint32_t touching;  // contacts of the last step
+    // Accuracy: the first sample since bodies were last added, moved or removed, and the work that
+    // forces did since.
+    bool measured;
+    double time, first_time, first_energy, first_momentum[3], energy_scale, work;
+    uint32_t tunnelled;
+};
+
+// A shape in the world: what collision functions read.
+typedef struct phys_geom {
+    phys_shape_type type;
+    core_vec3 position;
+    core_quat rotation;
+    phys_mat3 axes; // body to world
+    core_vec3 half;
+    float radius;
+} phys_geom;
+
+extern const phys_broad_method phys_broad_brute, phys_broad_sap;
+extern const phys_solver_method phys_solver_sequential;
+
+static inline core_vec3 phys_get3(const float *x, const float *y, const float *z, uint32_t i) {
+    return core_v3(x[i], y[i], z[i]);
+}
+static inline void phys_put3(float *x, float *y, float *z, uint32_t i, core_vec3 v) {
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+}
+static inline core_quat phys_body_quat(const phys_bodies *b, uint32_t i) {
+    return (core_quat){b->qx[i], b->qy[i], b->qz[i], b->qw[i]};
+}
+static inline uint32_t phys_slot_row(const core_columns *set, uint32_t slot) {
+    return set->pool.row[slot - 1];
+}
+static inline uint32_t phys_row_slot(const core_columns *set, uint32_t row) {
+    return set->pool.slot_of_row[row] + 1;
+}
+
+// shape.c
+bool phys_shape_check(const phys_shape_desc *shape, phys_body_type body);
+typedef struct phys_mass { // about the body's origin axes
+    float mass;
+    core_vec3 center;
+    phys_mat3 inertia; // about the centre
+} phys_mass;
+phys_mass phys_shape_mass(const phys_shape_desc *shape);
+// Principal moments and axes of a symmetric matrix (Jacobi). Diagonal input gives the identity.
+core_vec3 phys_principal(const phys_mat3 *inertia, core_quat *frame);
+phys_geom phys_shape_geom(const phys_world *world, uint32_t shape_row);
+core_aabb phys_geom_bounds(const phys_geom *geom);
+void phys_shapes_update_bounds(phys_world *world, float dt);
+
+// body.c
+void phys_body_sync_center(phys_bodies *b, uint32_t row); // origin -> centre of mass
+void phys_body_sync_origin(phys_bodies *b, uint32_t row); // centre of mass -> origin
+core_vec3 phys_body_inverse_inertia(const phys_bodies *b, uint32_t row, core_vec3 v);
+
+// pairs.c
+void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b);
+bool phys_pair_wanted(const phys_world *world, uint32_t shape_a, uint32_t shape_b);
+void phys_pairs_update(phys_world *world);
+void phys_pairs_drop_shape(phys_world *world, uint32_t shape_slot);
+void phys_pairs_release(phys_world *world);
+void phys_pairs_rebuild_map(phys_world *world);
+
+// narrow.c, collide*.c: out->count points closer than the margin; features and impulses are set by
+// the caller. a.type <= b.type in the order of phys_shape_type.
+void phys_narrow_update(phys_world *world, float dt);
+void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
+void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
+
+// Picks at most 4 of n > 4 points (same plane, unit normal): keep[3] may be -1.
+void phys_manifold_reduce(const core_vec3 *p, const float *separation, int n, core_vec3 normal,
+                          int keep[4]);
+
+// integrate.c
+void phys_integrate_velocity(phys_world *world, float h);
+void phys_integrate_rotation(phys_bodies *b, uint32_t row, float h);
+void phys_clear_forces(phys_world *world);
+
+#endif
