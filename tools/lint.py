@@ -3,7 +3,7 @@
 
     tools/lint.py [CHECK...]      all checks, or only those named
 
-Checks: format, lua, python, length, rooms, lua_h, headers, flags, words, links, shell.
+Checks: format, lua, python, length, rooms, lua_h, headers, flags, words, links, report, shell.
 """
 
 import ast
@@ -179,6 +179,13 @@ def check_links():
         for target in link.findall(text):
             if not re.match(r"[a-z]+:", target) and not (path.parent / target).exists():
                 yield f"{shown(path)}: no file {target}"
+
+
+def check_report():
+    """docs/from-the-report.md is fresh and every name in it exists."""
+    code, text = output_of([sys.executable, "tools/report_table.py", "--check"])
+    if code != 0:
+        yield from text.splitlines()
 
 
 def main():
