@@ -28,39 +28,57 @@ void gfx_world_destroy(gfx_world *world);
 size_t gfx_world_bytes(const gfx_world *world);
 void gfx_world_counts(const gfx_world *world,
                       core_metrics *metrics); // lights, clusters, light_refs, draws, triangles
-// Settings by name ("render", "clusters", "exposure", ...): --set gfx.NAME=VALUE.
+// Settings by name, as --set gfx.NAME=VALUE reaches them. False + core_fail naming the nearest name
+// or the allowed values.
+//   render      auto | forward | clustered | none
+//   clusters    cells as XxYxZ, each 1..64, default 16x9x24
+//   slices      exponential | linear
+//   exposure    factor before the tone map, > 0, default 1
+//   tonemap     neutral (Khronos PBR Neutral) | linear
+//   instancing  on | off (off: one draw call per instance; the baseline of the draw-count chart)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);
 
 typedef enum gfx_light_type { GFX_POINT, GFX_SPOT, GFX_DIRECTIONAL } gfx_light_type;
+// A point or spot light of radiant intensity I gives the irradiance I / d^2 at distance d, times a
+// window (1 - (d/radius)^4)^2 that reaches zero at its radius. A white surface under a directional
+// light of irradiance pi, facing it, has radiance 1. A world without any light is lit by a default
+// sun, until its ambient light is set.
 typedef struct gfx_light_desc {
     gfx_light_type type;
-    core_vec3 position, direction; // direction: unit, where the light goes
-    float color[3];                // linear
-    float intensity;    // point, spot: W/sr-like radiant intensity; directional: irradiance
-    float radius;       // m, > 0: the light is zero beyond
-    float inner, outer; // spot: half angles, radians
+    core_vec3 position, direction; // direction: where the light goes; need not be unit
+    float color[3];                // linear, >= 0; zero: white
+    float intensity;               // >= 0. Point, spot: radiant intensity; directional: irradiance
+    float radius;                  // m, > 0: the light is zero beyond. Default 10
+    float inner, outer;            // spot: half angles, radians, 0 <= inner < outer < pi/2
     uint32_t cookie;
 } gfx_light_desc;
 gfx_light_desc gfx_light_desc_default(gfx_light_type type);
 gfx_light gfx_light_create(gfx_world *world, const gfx_light_desc *desc);
 bool gfx_light_destroy(gfx_world *world, gfx_light light);
 bool gfx_light_set_position(gfx_world *world, gfx_light light, core_vec3 position);
+bool gfx_light_set_direction(gfx_world *world, gfx_light light, core_vec3 direction);
 bool gfx_light_set_color(gfx_world *world, gfx_light light, float r, float g, float b,
                          float intensity);
+// Ambient light: linear radiance of the upper hemisphere; the lower one gives 0.4 of it.
 void gfx_world_set_ambient(gfx_world *world, float r, float g, float b);
+// Linear radiance where nothing is drawn.
 void gfx_world_set_background(gfx_world *world, float r, float g, float b);
 
 // Built-in unit meshes: "box" (edge 1), "sphere" (radius 0.5), "capsule" (radius 0.5, segment 1),
 // "cylinder" (radius 0.5, height 1), "plane" (1 x 1, +Y). Null + core_fail names the nearest.
 gfx_mesh gfx_mesh_builtin(gfx_world *world, const char *name);
 gfx_mesh gfx_mesh_create(gfx_world *world, const core_mesh_data *data); // copies
+// Instances of a destroyed mesh are no longer drawn. Built-in meshes stay: false.
 bool gfx_mesh_destroy(gfx_world *world, gfx_mesh mesh);
 
 typedef struct gfx_material_desc {
     core_material_data data;
     uint32_t cookie;
 } gfx_material_desc;
+gfx_material_desc gfx_material_desc_default(void); // white, rough 0.5, not metallic
 gfx_material gfx_material_create(gfx_world *world, const gfx_material_desc *desc);
+// Instances of a destroyed material are drawn in the default one.
+bool gfx_material_destroy(gfx_world *world, gfx_material material);
 
 typedef struct gfx_instance_desc {
     gfx_mesh mesh;
@@ -76,22 +94,35 @@ bool gfx_instance_set_color(gfx_world *world, gfx_instance instance, float r, fl
 bool gfx_instance_set_transform(gfx_world *world, gfx_instance instance, core_vec3 t, core_quat r,
                                 core_vec3 s);
 
+// Pose of a skinned instance: rows3x4[count*12], one 3x4 row-major matrix a bone that takes a
+// vertex from bind pose to model space (inverse bind included). Copied. count must reach the mesh's
+// largest joint; an instance of a skinned mesh without a palette is drawn in bind pose.
+bool gfx_instance_set_palette(gfx_world *world, gfx_instance instance, const float *rows3x4,
+                              uint32_t count);
+
+// Zero fields mean default. A world whose camera was never set is seen as a whole, from a corner.
 typedef struct gfx_camera {
     core_vec3 position;
     core_quat rotation; // looks along -Z
-    float fovy;         // radians
-    float near_plane;   // m
-    float virtual_far;  // m: no clustered light beyond
+    float fovy;         // radians, default 60 degrees
+    float near_plane;   // m, default 0.1
+    float virtual_far;  // m, default 100: no point or spot light is seen beyond
+    float ortho_height; // m seen from bottom to top: orthographic when > 0 (far = virtual_far)
 } gfx_camera;
 void gfx_world_set_camera(gfx_world *world, const gfx_camera *camera);
 gfx_camera gfx_world_camera(const gfx_world *world);
 
-// Screen-space 2D, drawn over the next frame in call order; pixels, origin top left.
+// Screen-space 2D, drawn over the next frame in call order; pixels, origin top left. Colours are
+// sRGB-encoded with straight alpha. Text is UTF-8, y its top, size the line height; '\n' starts a
+// line.
 void gfx_print(gfx_world *world, float x, float y, float size, const float color[4],
                const char *text);
 void gfx_rect(gfx_world *world, float x, float y, float w, float h, const float color[4]);
 void gfx_image(gfx_world *world, const char *path, float x, float y, float w, float h);
-// Forgets the 2D commands and debug shapes of the last frame; called before a draw callback.
+// Stage times of the last step as bars and the counts of the last frame as text, top left: an
+// overlay for people. metrics may be NULL (frame counts only).
+void gfx_overlay(gfx_world *world, const core_metrics *metrics);
+// Forgets the 2D commands of the last frame; called before a draw callback.
 void gfx_world_begin_frame(gfx_world *world);
 
 // ---- device: GL from here on ----
@@ -100,7 +131,7 @@ typedef struct gfx_device_desc {
     uint32_t width, height;
     const char *title;
     bool vsync;
-    core_vfs *vfs; // shaders are read from "shaders/"; borrowed
+    core_vfs *vfs; // shaders are read from "shaders/", a font from "fonts/default.ttf"; borrowed
     core_metrics *metrics;
     bool float_target; // RGBA32F HDR target (tests)
     uint32_t cookie;
@@ -111,9 +142,12 @@ gfx_device *gfx_device_create(const gfx_device_desc *desc);
 void gfx_device_destroy(gfx_device *device);
 // Draws the world; false + core_fail on shader or GL errors (file and line).
 bool gfx_device_render(gfx_device *device, gfx_world *world);
-// Bottom line of the frame last rendered: RGBA8 sRGB, rows top to bottom, width*height*4 bytes.
+// The frame last rendered: RGBA8 sRGB, rows top to bottom, width*height*4 bytes.
 bool gfx_device_read(gfx_device *device, uint8_t *rgba);
-bool gfx_device_read_float(gfx_device *device, float *rgba); // the HDR target before tone mapping
+// The HDR target before tone mapping, linear, width*height*4 floats, rows top to bottom.
+bool gfx_device_read_float(gfx_device *device, float *rgba);
+// Reversed-Z depth, width*height floats, rows top to bottom.
+bool gfx_device_read_depth(gfx_device *device, float *depth);
 bool gfx_device_shot(gfx_device *device, const char *real_path); // PNG, makes parent folders
 bool gfx_device_resize(gfx_device *device, uint32_t width, uint32_t height);
 void gfx_device_size(const gfx_device *device, uint32_t *width, uint32_t *height);
@@ -133,7 +167,7 @@ typedef struct gfx_event {
     gfx_event_type type;
     int32_t code;    // key (GLFW codes), button, codepoint
     int32_t pressed; // 1 press, 0 release, 2 repeat
-    float x, y;      // position, scroll, size
+    float x, y;      // position, scroll, size (pixels)
 } gfx_event;
 // Next pending window event; false when none.
 bool gfx_device_poll(gfx_device *device, gfx_event *out);

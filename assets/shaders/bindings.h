@@ -1,0 +1,97 @@
+// Binding points and block layouts, read by both C and GLSL: the only place where either is written
+// down. Every block is std140/std430 compatible as it stands: 16-byte members only.
+#ifndef GFX_BINDINGS_H
+#define GFX_BINDINGS_H
+
+#ifdef __STDC_VERSION__
+#include <stdint.h>
+#define GFX_VEC4(name)  float name[4]
+#define GFX_UVEC4(name) uint32_t name[4]
+#define GFX_MAT4(name)  float name[16]
+#else
+#define GFX_VEC4(name)  vec4 name
+#define GFX_UVEC4(name) uvec4 name
+#define GFX_MAT4(name)  mat4 name
+#endif
+
+// Uniform blocks.
+#define GFX_UBO_VIEW 0
+
+// Storage blocks.
+#define GFX_SSBO_LIGHTS          0
+#define GFX_SSBO_CLUSTER_OFFSETS 1
+#define GFX_SSBO_CLUSTER_LIGHTS  2
+#define GFX_SSBO_INSTANCES       3
+#define GFX_SSBO_MATERIALS       4
+#define GFX_SSBO_BONES           5
+#define GFX_SSBO_QUADS           6
+
+// Texture units.
+#define GFX_TEX_BASE_COLOR         0
+#define GFX_TEX_NORMAL             1
+#define GFX_TEX_METALLIC_ROUGHNESS 2
+#define GFX_TEX_OCCLUSION          3
+#define GFX_TEX_EMISSIVE           4
+#define GFX_TEX_HDR                8
+#define GFX_TEX_IMAGE              9
+
+// Vertex attributes.
+#define GFX_ATTR_POSITION 0
+#define GFX_ATTR_NORMAL   1
+#define GFX_ATTR_TANGENT  2
+#define GFX_ATTR_UV       3
+#define GFX_ATTR_COLOR    4
+#define GFX_ATTR_JOINT    5
+#define GFX_ATTR_WEIGHT   6
+
+// Plain uniforms (glUniform locations).
+#define GFX_U_INSTANCE 0
+
+#define GFX_LIGHT_POINT       0
+#define GFX_LIGHT_SPOT        1
+#define GFX_LIGHT_DIRECTIONAL 2
+
+#define GFX_TONEMAP_NEUTRAL 0
+#define GFX_TONEMAP_LINEAR  1
+
+struct gfx_view_block {
+    GFX_MAT4(view_proj);
+    GFX_MAT4(view);
+    GFX_VEC4(camera);         // xyz position, w near plane (perspective) or 0 (orthographic)
+    GFX_VEC4(viewport);       // width, height, 1/width, 1/height (pixels)
+    GFX_VEC4(ambient_sky);    // rgb radiance from above, w exposure
+    GFX_VEC4(ambient_ground); // rgb radiance from below
+    GFX_VEC4(cluster_scale);  // tiles per pixel x, y; slices per log2(depth), or per metre; bias
+    GFX_VEC4(depth_range);    // orthographic: near, far; z = virtual far (m)
+    GFX_UVEC4(cluster_grid);  // cells x, y, z; 1 when slices are linear
+    GFX_UVEC4(light_count);   // directional, point and spot, tone map
+};
+
+struct gfx_light_block {
+    GFX_VEC4(position_radius); // world, m
+    GFX_VEC4(color_type);      // linear intensity; GFX_LIGHT_*
+    GFX_VEC4(direction);       // unit, where the light goes; w unused
+    GFX_VEC4(spot);            // scale, offset of the squared smooth cone falloff; 1/radius^2
+};
+
+struct gfx_instance_block {
+    GFX_VEC4(row0); // world transform, rows of a 3x4 matrix
+    GFX_VEC4(row1);
+    GFX_VEC4(row2);
+    GFX_VEC4(color);
+    GFX_UVEC4(index); // material, first bone row
+};
+
+struct gfx_material_block {
+    GFX_VEC4(base_color);
+    GFX_VEC4(emissive_metallic); // rgb, metallic
+    GFX_VEC4(params);            // roughness, normal scale, occlusion strength, alpha cut-off
+};
+
+struct gfx_quad_block {
+    GFX_VEC4(rect);  // x, y, width, height in pixels, origin top left
+    GFX_VEC4(uv);    // u0, v0, u1, v1
+    GFX_VEC4(color); // sRGB-encoded, straight alpha
+};
+
+#endif

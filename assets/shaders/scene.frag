@@ -1,0 +1,50 @@
+// Shading of every mesh: direct light, ambient hemisphere, emission. Linear radiance out.
+#include "common.glsl"
+#include "brdf.glsl"
+#include "lights.glsl"
+
+in vec3 v_world;
+in vec3 v_normal;
+in vec2 v_uv;
+in vec4 v_color;
+flat in uint v_material;
+layout(location = 0) out vec4 o_color;
+
+layout(std430, binding = GFX_SSBO_MATERIALS) readonly buffer MaterialBlock {
+    gfx_material_block materials[];
+};
+
+// Below this alpha the lobe of a point light is narrower than 32-bit arithmetic resolves.
+const float MIN_ROUGHNESS = 0.045;
+
+Surface surfaceOf(gfx_material_block m, vec4 base) {
+    Surface s;
+    float metallic = m.emissive_metallic.w;
+    float roughness = clamp(m.params.x, MIN_ROUGHNESS, 1.0);
+    s.position = v_world;
+    s.view = normalize(u_view.camera.xyz - v_world);
+    s.normal = normalize(gl_FrontFacing ? v_normal : -v_normal);
+    s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
+    s.diffuse = base.rgb * (1.0 - metallic);
+    s.f0 = mix(vec3(0.04), base.rgb, metallic);
+    s.alpha = roughness * roughness;
+    return s;
+}
+
+// Hemisphere ambient: sky above, ground below, on the diffuse lobe and on a rough mirror direction.
+vec3 ambientLight(Surface s) {
+    vec3 sky = u_view.ambient_sky.rgb, ground = u_view.ambient_ground.rgb;
+    vec3 irradiance = mix(ground, sky, 0.5 + 0.5 * s.normal.y);
+    float up = reflect(-s.view, s.normal).y;
+    float sharp = mix(4.0, 0.5, s.alpha);
+    vec3 mirror = mix(ground, sky, clamp(0.5 + sharp * up, 0.0, 1.0));
+    vec3 fresnel = s.f0 + (max(vec3(1.0 - s.alpha), s.f0) - s.f0) * pow(1.0 - s.noV, 5.0);
+    return s.diffuse * irradiance + fresnel * mirror;
+}
+
+void main() {
+    gfx_material_block m = materials[v_material];
+    vec4 base = m.base_color * v_color;
+    Surface s = surfaceOf(m, base);
+    o_color = vec4(directLight(s) + ambientLight(s) + m.emissive_metallic.rgb, base.a);
+}

@@ -1,0 +1,92 @@
+// Vertices of every mesh: instance transform, optional skinning.
+#include "common.glsl"
+
+layout(location = GFX_ATTR_POSITION) in vec3 a_position;
+#ifndef DEPTH_ONLY
+layout(location = GFX_ATTR_NORMAL) in vec3 a_normal;
+layout(location = GFX_ATTR_TANGENT) in vec4 a_tangent;
+layout(location = GFX_ATTR_UV) in vec2 a_uv;
+layout(location = GFX_ATTR_COLOR) in vec4 a_color;
+#endif
+
+layout(std430, binding = GFX_SSBO_INSTANCES) readonly buffer InstanceBlock {
+    gfx_instance_block instances[];
+};
+#ifdef USE_SKINNING
+layout(location = GFX_ATTR_JOINT) in uvec4 a_joint;
+layout(location = GFX_ATTR_WEIGHT) in vec4 a_weight;
+layout(std430, binding = GFX_SSBO_BONES) readonly buffer BoneBlock { vec4 boneRows[]; };
+#endif
+
+#ifdef USE_INSTANCING
+#define INSTANCE uint(gl_BaseInstanceARB + gl_InstanceID)
+#else
+layout(location = GFX_U_INSTANCE) uniform uint u_instance;
+#define INSTANCE u_instance
+#endif
+
+// The depth prepass and the shading pass must land on the same depth bits (GL_EQUAL).
+invariant gl_Position;
+
+#ifndef DEPTH_ONLY
+out vec3 v_world;
+out vec3 v_normal;
+out vec2 v_uv;
+out vec4 v_color;
+flat out uint v_material;
+#ifdef USE_NORMAL_MAP
+out vec4 v_tangent;
+#endif
+#endif
+
+mat3x4 rowsOf(gfx_instance_block instance) {
+    return mat3x4(instance.row0, instance.row1, instance.row2);
+}
+
+#ifdef USE_SKINNING
+// Linear blend skinning: the weighted sum of the bones' 3x4 matrices (bind inverse included).
+mat3x4 skinRows(uint first) {
+    mat3x4 rows = mat3x4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        uint at = (first + a_joint[i]) * 3u;
+        rows += a_weight[i] * mat3x4(boneRows[at], boneRows[at + 1u], boneRows[at + 2u]);
+    }
+    return rows;
+}
+#endif
+
+// Normals go with the cofactors of the matrix: right under any scale, mirroring included.
+vec3 transformNormal(mat3x4 rows, vec3 n) {
+    vec3 a = rows[0].xyz, b = rows[1].xyz, c = rows[2].xyz;
+    return vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
+}
+
+void main() {
+    gfx_instance_block instance = instances[INSTANCE];
+    mat3x4 world = rowsOf(instance);
+    vec4 position = vec4(a_position, 1.0);
+#ifdef USE_SKINNING
+    mat3x4 skin = skinRows(instance.index.y);
+    position = vec4(position * skin, 1.0);
+#endif
+    vec3 p = position * world;
+    gl_Position = u_view.view_proj * vec4(p, 1.0);
+#ifndef DEPTH_ONLY
+    vec3 normal = a_normal;
+#ifdef USE_SKINNING
+    normal = transformNormal(skin, normal);
+#endif
+    v_world = p;
+    v_normal = transformNormal(world, normal);
+    v_uv = a_uv;
+    v_color = a_color * instance.color;
+    v_material = instance.index.x;
+#ifdef USE_NORMAL_MAP
+    vec3 tangent = a_tangent.xyz;
+#ifdef USE_SKINNING
+    tangent = vec4(tangent, 0.0) * skin;
+#endif
+    v_tangent = vec4(vec4(tangent, 0.0) * world, a_tangent.w);
+#endif
+#endif
+}

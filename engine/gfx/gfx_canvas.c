@@ -1,0 +1,103 @@
+// Screen-space calls: recorded in the world, drawn by the device.
+#include "gfx/gfx_internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static gfx_command *add_command(gfx_world *world, gfx_command_type type, const char *text) {
+    gfx_command *c = gfx_grow(&world->commands, sizeof *c, 1);
+    *c = (gfx_command){.type = type, .color = {1.0f, 1.0f, 1.0f, 1.0f}};
+    if (text) {
+        size_t length = strlen(text);
+        c->text = (uint32_t)world->text.count;
+        c->text_length = (uint32_t)length;
+        memcpy(gfx_grow(&world->text, 1, length + 1), text, length + 1);
+    }
+    return c;
+}
+
+void gfx_print(gfx_world *world, float x, float y, float size, const float color[4],
+               const char *text) {
+    if (!text) {
+        return;
+    }
+    gfx_command *c = add_command(world, GFX_CMD_TEXT, text);
+    c->x = x, c->y = y, c->h = CORE_CLAMP(size, 4.0f, 256.0f);
+    c->color = (gfx_rgba){color[0], color[1], color[2], color[3]};
+}
+
+void gfx_rect(gfx_world *world, float x, float y, float w, float h, const float color[4]) {
+    gfx_command *c = add_command(world, GFX_CMD_RECT, NULL);
+    c->x = x, c->y = y, c->w = w, c->h = h;
+    c->color = (gfx_rgba){color[0], color[1], color[2], color[3]};
+}
+
+void gfx_image(gfx_world *world, const char *path, float x, float y, float w, float h) {
+    if (!path) {
+        return;
+    }
+    gfx_command *c = add_command(world, GFX_CMD_IMAGE, path);
+    c->x = x, c->y = y, c->w = w, c->h = h;
+}
+
+void gfx_world_begin_frame(gfx_world *world) { world->commands.count = world->text.count = 0; }
+
+// ---- overlay ----
+
+enum { LINE = 16, LEFT = 10, BAR_LEFT = 200, BAR_MS = 12 }; // pixels; pixels a millisecond
+
+static void overlay_line(gfx_world *world, int line, const char *text) {
+    const float color[4] = {0.92f, 0.94f, 0.96f, 1.0f};
+    gfx_print(world, LEFT, (float)(LEFT + line * LINE), LINE - 2, color, text);
+}
+
+static void overlay_bar(gfx_world *world, int line, double ms, const float color[4]) {
+    float y = (float)(LEFT + line * LINE + 3), w = (float)(ms * BAR_MS);
+    gfx_rect(world, BAR_LEFT, y, CORE_CLAMP(w, 1.0f, 240.0f), LINE - 6, color);
+}
+
+static int overlay_stages(gfx_world *world, const core_metrics *metrics, int line) {
+    const float own[4] = {0.33f, 0.66f, 0.95f, 0.9f}, all[4] = {0.96f, 0.62f, 0.22f, 0.9f};
+    char text[128];
+    double step = core_metrics_step_last(metrics);
+    snprintf(text, sizeof text, "step %8.3f ms", step);
+    overlay_line(world, line, text);
+    overlay_bar(world, line++, step, all);
+    for (int i = 0; i < CORE_STAGE_TOTAL; ++i) {
+        double ms = core_metrics_stage_last(metrics, (core_stage)i);
+        if (ms > 0.0005) { // rooms that cost nothing are not listed
+            snprintf(text, sizeof text, "%-13s%7.3f", core_stage_name((core_stage)i), ms);
+            overlay_line(world, line, text);
+            overlay_bar(world, line++, ms, own);
+        }
+    }
+    return line;
+}
+
+static int overlay_counts(gfx_world *world, const core_metrics *metrics, int line) {
+    char text[128];
+    for (int i = 0; i < CORE_COUNT_TOTAL; ++i) {
+        double n = core_metrics_get(metrics, (core_count)i);
+        if (n > 0.0) {
+            snprintf(text, sizeof text, "%-13s%7.0f", core_count_name((core_count)i), n);
+            overlay_line(world, line++, text);
+        }
+    }
+    return line;
+}
+
+void gfx_overlay(gfx_world *world, const core_metrics *metrics) {
+    const float back[4] = {0.05f, 0.06f, 0.08f, 0.78f};
+    size_t panel = world->commands.count;
+    gfx_rect(world, 0.0f, 0.0f, 450.0f, 0.0f, back);
+    int line = 0;
+    if (metrics) {
+        line = overlay_counts(world, metrics, overlay_stages(world, metrics, 0) + 1);
+    } else {
+        char text[128];
+        snprintf(text, sizeof text, "draws %u, triangles %u", world->stats.draws,
+                 world->stats.triangles);
+        overlay_line(world, line++, text);
+    }
+    ((gfx_command *)world->commands.data)[panel].h = (float)(2 * LEFT + line * LINE);
+}

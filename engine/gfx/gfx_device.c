@@ -1,0 +1,255 @@
+// The device: context, targets, GL errors, pictures out.
+#include "gfx/gfx_device_internal.h"
+
+#include "core/log.h"
+
+#include <stb_image_write.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MAX_SIZE = 16384 };
+
+gfx_device_desc gfx_device_desc_default(void) {
+    return (gfx_device_desc){.width = 1280, .height = 720, .vsync = true, .cookie = GFX_COOKIE};
+}
+
+// Errors fail the call during which they happen; the rest is for the log.
+static void GLAD_API_PTR on_gl_message(GLenum source, GLenum type, GLuint id, GLenum severity,
+                                       GLsizei length, const GLchar *message, const void *user) {
+    (void)source, (void)id, (void)length;
+    gfx_device *device = (gfx_device *)user;
+    if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
+        device->gl_errors++;
+        core_fail("OpenGL: %s", message);
+    } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
+        core_log(CORE_LOG_WARN, "OpenGL: %s", message);
+    }
+}
+
+bool gfx_device_check(gfx_device *device, const char *what, uint32_t errors_before) {
+    return device->gl_errors == errors_before ||
+           core_fail("%s: %u OpenGL error(s), the last: %s", what,
+                     device->gl_errors - errors_before, core_last_error());
+}
+
+static GLuint make_texture(GLenum format, uint32_t width, uint32_t height) {
+    GLuint t;
+    glCreateTextures(GL_TEXTURE_2D, 1, &t);
+    glTextureStorage2D(t, 1, format, (GLsizei)width, (GLsizei)height);
+    glTextureParameteri(t, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(t, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTextureParameteri(t, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(t, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return t;
+}
+
+static void release_targets(gfx_device *d) {
+    const GLuint textures[3] = {d->hdr_texture, d->depth_texture, d->ldr_texture};
+    const GLuint targets[2] = {d->hdr_target, d->ldr_target};
+    glDeleteTextures(3, textures);
+    glDeleteFramebuffers(2, targets);
+}
+
+static bool make_targets(gfx_device *d, uint32_t width, uint32_t height) {
+    release_targets(d);
+    d->width = width, d->height = height;
+    d->hdr_texture = make_texture(d->float_target ? GL_RGBA32F : GL_RGBA16F, width, height);
+    d->depth_texture = make_texture(GL_DEPTH_COMPONENT32F, width, height);
+    d->ldr_texture = make_texture(GL_RGBA8, width, height);
+    GLuint targets[2];
+    glCreateFramebuffers(2, targets);
+    d->hdr_target = targets[0], d->ldr_target = targets[1];
+    glNamedFramebufferTexture(d->hdr_target, GL_COLOR_ATTACHMENT0, d->hdr_texture, 0);
+    glNamedFramebufferTexture(d->hdr_target, GL_DEPTH_ATTACHMENT, d->depth_texture, 0);
+    glNamedFramebufferTexture(d->ldr_target, GL_COLOR_ATTACHMENT0, d->ldr_texture, 0);
+    for (int i = 0; i < 2; ++i) {
+        GLenum status = glCheckNamedFramebufferStatus(targets[i], GL_DRAW_FRAMEBUFFER);
+        if (status != GL_FRAMEBUFFER_COMPLETE) {
+            return core_fail("gfx_device: a %ux%u target is not complete (0x%x)", width, height,
+                             (unsigned)status);
+        }
+    }
+    return true;
+}
+
+static bool check_size(const char *call, uint32_t width, uint32_t height) {
+    return (width >= 1 && height >= 1 && width <= MAX_SIZE && height <= MAX_SIZE) ||
+           core_fail("%s: size is %ux%u, expected 1..%d each", call, width, height, MAX_SIZE);
+}
+
+static void set_up_context(gfx_device *d) {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(on_gl_message, d);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glClearDepth(0.0); // reversed: infinity
+    glDisable(GL_DITHER);
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glCreateVertexArrays(1, &d->empty_vao);
+    snprintf(d->name, sizeof d->name, "%s", (const char *)glGetString(GL_RENDERER));
+    d->software = strstr(d->name, "llvmpipe") || strstr(d->name, "softpipe");
+    d->draw_parameters = GLAD_GL_ARB_shader_draw_parameters;
+}
+
+gfx_device *gfx_device_create(const gfx_device_desc *desc) {
+    if (!desc || desc->cookie != GFX_COOKIE) {
+        core_fail("gfx_device_create: start from gfx_device_desc_default()");
+        return NULL;
+    }
+    if (!check_size("gfx_device_create", desc->width, desc->height)) {
+        return NULL;
+    }
+    gfx_context *context = desc->window ? gfx_context_glfw(desc) : gfx_context_egl(desc);
+    if (!context) {
+        return NULL;
+    }
+    gfx_device *d = core_alloc(sizeof *d);
+    d->context = context;
+    d->vfs = d->shaders.vfs = desc->vfs;
+    d->metrics = desc->metrics;
+    d->float_target = desc->float_target;
+    set_up_context(d);
+    if (!make_targets(d, desc->width, desc->height)) {
+        gfx_device_destroy(d);
+        return NULL;
+    }
+    return d;
+}
+
+void gfx_device_destroy(gfx_device *device) {
+    if (!device) {
+        return;
+    }
+    gfx_device *d = device;
+    d->context->table->make_current(d->context);
+    for (int i = 0; i < GFX_FRAMES; ++i) {
+        glDeleteSync(d->fence[i]);
+    }
+    gfx_quads_release(&d->quads);
+    gfx_geometry_release(&d->geometry);
+    gfx_shaders_release(&d->shaders);
+    gfx_stream *const streams[] = {&d->view_block, &d->light_block, &d->instance_block,
+                                   &d->bone_block, &d->draw_block};
+    for (size_t i = 0; i < CORE_COUNT_OF(streams); ++i) {
+        gfx_stream_release(streams[i]);
+    }
+    glDeleteBuffers(1, &d->material_buffer);
+    glDeleteVertexArrays(1, &d->empty_vao);
+    release_targets(d);
+    gfx_growing *const arrays[] = {&d->visible, &d->keys, &d->scratch, &d->commands, &d->batches};
+    for (size_t i = 0; i < CORE_COUNT_OF(arrays); ++i) {
+        gfx_growing_release(arrays[i]);
+    }
+    d->context->table->destroy(d->context);
+    core_free(d);
+}
+
+bool gfx_device_resize(gfx_device *device, uint32_t width, uint32_t height) {
+    if (!check_size("gfx_device_resize", width, height)) {
+        return false;
+    }
+    if (!device->context->table->make_current(device->context)) {
+        return false;
+    }
+    device->context->table->resize(device->context, width, height);
+    return make_targets(device, width, height);
+}
+
+bool gfx_device_follow_window(gfx_device *device) {
+    uint32_t width, height;
+    device->context->table->size(device->context, &width, &height);
+    if (width == 0 || height == 0 || (width == device->width && height == device->height)) {
+        return true; // minimised, or nothing changed
+    }
+    return make_targets(device, width, height);
+}
+
+void gfx_device_size(const gfx_device *device, uint32_t *width, uint32_t *height) {
+    *width = device->width, *height = device->height;
+}
+
+void gfx_device_present(gfx_device *device) {
+    gfx_device *d = device;
+    uint32_t width, height;
+    d->context->table->size(d->context, &width, &height);
+    if (!d->context->table->window || width == 0 || height == 0) {
+        return;
+    }
+    d->context->table->make_current(d->context);
+    glBlitNamedFramebuffer(d->ldr_target, 0, 0, 0, (GLint)d->width, (GLint)d->height, 0, 0,
+                           (GLint)width, (GLint)height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    d->context->table->present(d->context);
+}
+
+bool gfx_device_poll(gfx_device *device, gfx_event *out) {
+    return device->context->table->poll(device->context, out);
+}
+
+const char *gfx_device_name(const gfx_device *device) { return device->name; }
+bool gfx_device_software(const gfx_device *device) { return device->software; }
+
+// Turns the picture upside down in place: GL's first row is the lowest.
+static void flip_rows(uint8_t *data, size_t stride, uint32_t height) {
+    for (uint32_t y = 0; y < height / 2; ++y) {
+        uint8_t *a = data + y * stride, *b = data + (height - 1 - y) * stride;
+        for (size_t i = 0; i < stride; ++i) {
+            uint8_t t = a[i];
+            a[i] = b[i];
+            b[i] = t;
+        }
+    }
+}
+
+static bool read_texture(gfx_device *d, GLuint texture, GLenum format, GLenum type, size_t pixel,
+                         void *out) {
+    if (!out || !d->context->table->make_current(d->context)) {
+        return false;
+    }
+    uint32_t before = d->gl_errors;
+    size_t stride = d->width * pixel;
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glGetTextureImage(texture, 0, format, type, (GLsizei)(stride * d->height), out);
+    flip_rows(out, stride, d->height);
+    return gfx_device_check(d, "gfx_device_read", before);
+}
+
+bool gfx_device_read(gfx_device *device, uint8_t *rgba) {
+    return read_texture(device, device->ldr_texture, GL_RGBA, GL_UNSIGNED_BYTE, 4, rgba);
+}
+
+bool gfx_device_read_float(gfx_device *device, float *rgba) {
+    return read_texture(device, device->hdr_texture, GL_RGBA, GL_FLOAT, 16, rgba);
+}
+
+bool gfx_device_read_depth(gfx_device *device, float *depth) {
+    return read_texture(device, device->depth_texture, GL_DEPTH_COMPONENT, GL_FLOAT, 4, depth);
+}
+
+static bool make_parents(const char *path) {
+    char folder[4096];
+    snprintf(folder, sizeof folder, "%s", path);
+    for (char *at = strchr(folder + 1, '/'); at; at = strchr(at + 1, '/')) {
+        *at = '\0';
+        if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+            return core_fail("%s: the folder %s cannot be made (%s)", path, folder,
+                             strerror(errno));
+        }
+        *at = '/';
+    }
+    return true;
+}
+
+bool gfx_device_shot(gfx_device *device, const char *real_path) {
+    size_t bytes = (size_t)device->width * device->height * 4;
+    uint8_t *rgba = core_alloc(bytes);
+    bool ok = make_parents(real_path) && gfx_device_read(device, rgba);
+    if (ok && !stbi_write_png(real_path, (int)device->width, (int)device->height, 4, rgba,
+                              (int)device->width * 4)) {
+        ok = core_fail("%s: the picture cannot be written (%s)", real_path, strerror(errno));
+    }
+    core_free(rgba);
+    return ok;
+}

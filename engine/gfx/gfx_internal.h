@@ -1,0 +1,151 @@
+// What the files of this room share: the world's storage, and the state of one frame that the
+// device draws from it. No GL here.
+#ifndef GFX_INTERNAL_H
+#define GFX_INTERNAL_H
+
+#include "core/memory.h"
+#include "gfx/gfx.h"
+
+#include "../../assets/shaders/bindings.h"
+
+#define GFX_COOKIE 0x67667831u
+
+// Transform of an instance: rows of a 3x4 matrix, translation in the fourth column.
+typedef struct gfx_rows {
+    float m[12];
+} gfx_rows;
+typedef struct gfx_rgba {
+    float r, g, b, a;
+} gfx_rgba;
+
+#define GFX_LIGHT_COLUMNS(X)                                                                       \
+    X(uint32_t, type, 0)                                                                           \
+    X(float, px, 0)                                                                                \
+    X(float, py, 0) X(float, pz, 0) X(float, dx, 0) X(float, dy, 0) X(float, dz, 0) X(float, r, 0) \
+        X(float, g, 0) X(float, b, 0) X(float, intensity, 0) X(float, radius, 0)                   \
+            X(float, inner, 0) X(float, outer, 0)
+CORE_COLUMNS_DECLARE(gfx_lights, GFX_LIGHT_COLUMNS)
+
+#define GFX_INSTANCE_COLUMNS(X)                                                                    \
+    X(gfx_rows, rows, 0)                                                                           \
+    X(float, cx, 0)                                                                                \
+    X(float, cy, 0) X(float, cz, 0) X(float, cr, 0) /* bounding sphere, world */                   \
+        X(gfx_rgba, color, 0) X(gfx_mesh, mesh, 0) X(gfx_material, material, 0)                    \
+            X(float *, palette, 0) X(uint32_t, palette_bones, 0)
+CORE_COLUMNS_DECLARE(gfx_instances, GFX_INSTANCE_COLUMNS)
+
+// Vertex streams: positions alone for depth-only passes, then shading, then skinning.
+typedef struct gfx_vertex_shade {
+    int16_t normal[4]; // snorm
+    int16_t tangent[4];
+    float uv[2];
+    uint8_t color[4]; // unorm, linear
+} gfx_vertex_shade;
+typedef struct gfx_vertex_skin {
+    uint16_t joint[4];
+    uint16_t weight[4]; // unorm, sums to 65535
+} gfx_vertex_skin;
+
+typedef struct gfx_mesh_store {
+    uint32_t vertex_count, index_count;
+    float *position;         // [vertex_count*3]
+    gfx_vertex_shade *shade; // [vertex_count]
+    gfx_vertex_skin *skin;   // [vertex_count] or NULL
+    uint32_t *index;
+    core_vec3 center; // bounding sphere, model space
+    float radius;
+    uint32_t bones; // 1 + largest joint, 0 without skin
+    int builtin;    // 1 + number of the built-in mesh, 0 for others
+} gfx_mesh_store;
+
+#define GFX_MESH_COLUMNS(X) X(gfx_mesh_store, store, 0)
+CORE_COLUMNS_DECLARE(gfx_meshes, GFX_MESH_COLUMNS)
+#define GFX_MATERIAL_COLUMNS(X) X(core_material_data, data, 0)
+CORE_COLUMNS_DECLARE(gfx_materials, GFX_MATERIAL_COLUMNS)
+
+#define GFX_BUILTIN_MESHES 5
+
+typedef enum gfx_command_type { GFX_CMD_RECT, GFX_CMD_TEXT, GFX_CMD_IMAGE } gfx_command_type;
+typedef struct gfx_command { // one 2D call; text lies in the world's frame text
+    gfx_command_type type;
+    float x, y, w, h; // text: h is the size in pixels
+    gfx_rgba color;
+    uint32_t text, text_length;
+} gfx_command;
+
+typedef struct gfx_growing { // array that keeps its memory between frames
+    void *data;
+    size_t count; // elements in use
+    size_t bytes; // allocated
+} gfx_growing;
+// Adds `extra` elements of `element` bytes, not initialised; returns the first of them.
+void *gfx_grow(gfx_growing *array, size_t element, size_t extra);
+void gfx_growing_release(gfx_growing *array);
+
+typedef enum gfx_render_mode {
+    GFX_RENDER_AUTO,
+    GFX_RENDER_FORWARD,
+    GFX_RENDER_CLUSTERED,
+    GFX_RENDER_NONE
+} gfx_render_mode;
+
+typedef struct gfx_settings {
+    gfx_render_mode render;
+    uint32_t grid[3];
+    bool linear_slices;
+    float exposure;
+    int tonemap; // GFX_TONEMAP_*
+    bool instancing;
+} gfx_settings;
+
+typedef struct gfx_frame_stats {
+    uint32_t clusters, light_refs, draws, triangles, visible;
+} gfx_frame_stats;
+
+struct gfx_world {
+    uint64_t id; // no two worlds of a process share it: devices key their copies by it
+    core_jobs *jobs;
+    core_metrics *metrics;
+    gfx_lights lights;
+    gfx_instances instances;
+    gfx_meshes meshes;
+    gfx_materials materials;
+    gfx_mesh builtin[GFX_BUILTIN_MESHES];
+    uint64_t mesh_version, material_version; // raised by every change
+    gfx_settings settings;
+    gfx_camera camera;
+    bool camera_set;
+    float ambient[3], background[3];
+    bool ambient_set;
+    gfx_growing commands, text;
+    size_t heap_bytes; // of meshes and palettes
+    gfx_frame_stats stats;
+};
+
+// ---- names (gfx_settings.c) ----
+int gfx_find_name(const char *name, const char *const *names, int count); // -1: none
+// core_fail with the nearest name and the whole list.
+bool gfx_fail_name(const char *what, const char *name, const char *const *names, int count);
+
+// ---- meshes (gfx_mesh.c) ----
+void gfx_mesh_store_release(gfx_mesh_store *store);
+
+// ---- view (gfx_view.c) ----
+#define GFX_PLANES 6
+typedef struct gfx_view {
+    core_mat4 view, projection, view_projection;
+    core_vec3 position;
+    float tan_x, tan_y; // half extents at depth 1 (perspective), or in metres (orthographic)
+    float near_plane, virtual_far;
+    bool orthographic;
+    float plane[GFX_PLANES][4]; // unit normals inwards: n.p + d >= 0 inside
+} gfx_view;
+void gfx_view_make(const gfx_camera *camera, float aspect, gfx_view *out);
+// Camera of a world, or one that sees all its instances when none was set.
+gfx_camera gfx_world_camera_or_default(const gfx_world *world);
+
+// ---- culling (gfx_cull.c) ----
+// Rows whose bounding sphere touches the view, ascending. out[count]; returns how many.
+uint32_t gfx_cull(const gfx_instances *instances, const gfx_view *view, uint32_t *out);
+
+#endif

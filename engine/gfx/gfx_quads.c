@@ -1,0 +1,144 @@
+// Draws a world's screen-space calls: text, rectangles, images, in call order.
+#include "gfx/gfx_device_internal.h"
+
+#include <stb_image.h>
+
+#include <stdio.h>
+#include <string.h>
+
+void gfx_quads_release(gfx_quads *q) {
+    gfx_stream_release(&q->stream);
+    gfx_growing_release(&q->quads);
+    gfx_growing_release(&q->runs);
+    gfx_font_release(q->font);
+    for (uint32_t i = 0; i < q->images; ++i) {
+        glDeleteTextures(1, &q->image[i].texture);
+    }
+    *q = (gfx_quads){0};
+}
+
+static GLuint upload_image(const uint8_t *rgba, int width, int height) {
+    GLuint t;
+    glCreateTextures(GL_TEXTURE_2D, 1, &t);
+    glTextureStorage2D(t, 1, GL_RGBA8, width, height);
+    glTextureSubImage2D(t, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    glTextureParameteri(t, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(t, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(t, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return t;
+}
+
+static void load_image(gfx_device *d, gfx_image_entry *e) {
+    size_t size;
+    void *file = core_vfs_read(d->vfs, e->path, &size);
+    if (!file) {
+        return;
+    }
+    int width, height, channels;
+    uint8_t *rgba = stbi_load_from_memory(file, (int)size, &width, &height, &channels, 4);
+    if (rgba) {
+        e->texture = upload_image(rgba, width, height);
+        e->width = (uint32_t)width, e->height = (uint32_t)height;
+    } else {
+        core_fail("%s: no picture that can be read (%s)", e->path, stbi_failure_reason());
+    }
+    stbi_image_free(rgba);
+    core_free(file);
+}
+
+// Each path is tried once: a missing image is logged once and drawn as nothing.
+static const gfx_image_entry *find_image(gfx_device *d, const char *path) {
+    gfx_quads *q = &d->quads;
+    for (uint32_t i = 0; i < q->images; ++i) {
+        if (strcmp(q->image[i].path, path) == 0) {
+            return &q->image[i];
+        }
+    }
+    if (q->images == GFX_IMAGES || !d->vfs) {
+        return NULL;
+    }
+    gfx_image_entry *e = &q->image[q->images++];
+    snprintf(e->path, sizeof e->path, "%s", path);
+    load_image(d, e);
+    return e;
+}
+
+// Quads that follow one another with one texture are one draw.
+static void extend_run(gfx_quads *q, GLuint texture, uint32_t features, size_t before) {
+    uint32_t added = (uint32_t)(q->quads.count - before);
+    gfx_quad_run *last = q->runs.count ? (gfx_quad_run *)q->runs.data + q->runs.count - 1 : NULL;
+    if (last && last->texture == texture && last->features == features) {
+        last->count += added;
+    } else if (added) {
+        *(gfx_quad_run *)gfx_grow(&q->runs, sizeof *last, 1) =
+            (gfx_quad_run){(uint32_t)before, added, texture, features};
+    }
+}
+
+static void add_rect(gfx_quads *q, const gfx_command *c, float w, float h) {
+    struct gfx_quad_block *b = gfx_grow(&q->quads, sizeof *b, 1);
+    *b = (struct gfx_quad_block){.rect = {c->x, c->y, w, h}, .uv = {0.0f, 0.0f, 1.0f, 1.0f}};
+    memcpy(b->color, &c->color, sizeof b->color);
+}
+
+static void add_command(gfx_device *d, const gfx_world *world, const gfx_command *c) {
+    gfx_quads *q = &d->quads;
+    size_t before = q->quads.count;
+    const char *text = (const char *)world->text.data + c->text;
+    if (c->type == GFX_CMD_RECT) {
+        add_rect(q, c, c->w, c->h);
+        extend_run(q, 0, 0, before);
+    } else if (c->type == GFX_CMD_TEXT) {
+        if (!q->font_tried) {
+            q->font = gfx_font_create(d->vfs);
+            q->font_tried = true;
+        }
+        if (q->font) {
+            gfx_font_layout(q->font, text, c->text_length, c->x, c->y, c->h, &c->color, &q->quads);
+            extend_run(q, gfx_font_texture(q->font), GFX_FEATURE_TEXT, before);
+        }
+    } else {
+        const gfx_image_entry *e = find_image(d, text);
+        if (e && e->texture) {
+            add_rect(q, c, c->w > 0.0f ? c->w : (float)e->width,
+                     c->h > 0.0f ? c->h : (float)e->height);
+            extend_run(q, e->texture, GFX_FEATURE_IMAGE, before);
+        }
+    }
+}
+
+bool gfx_quads_draw(gfx_device *d, const gfx_world *world) {
+    gfx_quads *q = &d->quads;
+    if (world->commands.count == 0) {
+        return true;
+    }
+    q->quads.count = q->runs.count = 0;
+    if (q->font) {
+        gfx_font_begin_frame(q->font);
+    }
+    for (size_t i = 0; i < world->commands.count; ++i) {
+        add_command(d, world, (const gfx_command *)world->commands.data + i);
+    }
+    size_t bytes = q->quads.count * sizeof(struct gfx_quad_block);
+    if (bytes == 0) {
+        return true;
+    }
+    memcpy(gfx_stream_begin(&q->stream, bytes, d->frame), q->quads.data, bytes);
+    gfx_stream_bind(&q->stream, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_QUADS, bytes, d->frame);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glBindVertexArray(d->empty_vao);
+    bool ok = true;
+    for (size_t i = 0; i < q->runs.count && ok; ++i) {
+        const gfx_quad_run *run = (const gfx_quad_run *)q->runs.data + i;
+        GLuint program = gfx_shaders_get(&d->shaders, "quad.vert", "quad.frag", run->features);
+        ok = program != 0;
+        if (ok) {
+            glUseProgram(program);
+            glBindTextureUnit(GFX_TEX_IMAGE, run->texture);
+            glDrawArrays(GL_TRIANGLES, (GLint)run->first * 6, (GLsizei)run->count * 6);
+        }
+    }
+    glDisable(GL_BLEND);
+    return ok;
+}

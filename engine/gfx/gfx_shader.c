@@ -1,0 +1,287 @@
+#include "gfx/gfx_shader.h"
+
+#include "core/hash.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- one source text from a file and what it includes ----
+
+typedef struct text {
+    char *data;
+    size_t length, capacity;
+} text;
+
+typedef struct source {
+    core_vfs *vfs;
+    text out;
+    char file[GFX_SHADER_FILES][GFX_SHADER_PATH];
+    int files;
+    uint64_t stamp; // of all files together
+} source;
+
+static void append(text *t, const char *data, size_t length) {
+    if (t->length + length + 1 > t->capacity) {
+        size_t capacity = (t->length + length + 1) * 2;
+        t->data = core_realloc(t->data, t->capacity, capacity);
+        t->capacity = capacity;
+    }
+    memcpy(t->data + t->length, data, length);
+    t->length += length;
+    t->data[t->length] = '\0';
+}
+
+static void append_line_mark(source *s, int line, int file) {
+    char mark[48];
+    int n = snprintf(mark, sizeof mark, "#line %d %d\n", line, file);
+    append(&s->out, mark, (size_t)n);
+}
+
+// The quoted name of an #include line, or false.
+static bool include_name(const char *line, char *name, size_t size) {
+    while (*line == ' ' || *line == '\t') {
+        ++line;
+    }
+    if (strncmp(line, "#include", 8) != 0) {
+        return false;
+    }
+    const char *open = strchr(line, '"'), *end = strchr(line, '\n');
+    const char *close = open ? strchr(open + 1, '"') : NULL;
+    if (!close || (end && close > end) || (size_t)(close - open) > size) {
+        return false;
+    }
+    memcpy(name, open + 1, (size_t)(close - open - 1));
+    name[close - open - 1] = '\0';
+    return true;
+}
+
+static bool add_file(source *s, const char *name);
+
+// Copies lines; an #include is replaced by the file's text, marked so that errors name their file.
+static bool add_lines(source *s, const char *at, int file) {
+    append_line_mark(s, 1, file);
+    for (int line = 1; *at; ++line) {
+        const char *end = strchr(at, '\n');
+        size_t length = end ? (size_t)(end - at) + 1 : strlen(at);
+        char name[GFX_SHADER_PATH];
+        if (include_name(at, name, sizeof name)) {
+            if (!add_file(s, name)) {
+                return core_fail_quiet("%s:%d: %s", s->file[file], line, core_last_error());
+            }
+            append_line_mark(s, line + 1, file);
+        } else {
+            append(&s->out, at, length);
+        }
+        at += length;
+    }
+    append(&s->out, "\n", 1);
+    return true;
+}
+
+// Each file enters once, so headers need no guards and cycles end.
+static bool add_file(source *s, const char *name) {
+    for (int i = 0; i < s->files; ++i) {
+        if (strcmp(s->file[i], name) == 0) {
+            return true;
+        }
+    }
+    if (s->files == GFX_SHADER_FILES) {
+        return core_fail_quiet("more than %d files in one shader", GFX_SHADER_FILES);
+    }
+    char path[GFX_SHADER_PATH + 16];
+    snprintf(path, sizeof path, "shaders/%s", name);
+    char *data = core_vfs_read(s->vfs, path, NULL);
+    if (!data) {
+        return false;
+    }
+    s->stamp = core_hash_mix(s->stamp, core_vfs_stamp(s->vfs, path));
+    int file = s->files++;
+    snprintf(s->file[file], sizeof s->file[file], "%s", name);
+    bool ok = add_lines(s, data, file);
+    core_free(data);
+    return ok;
+}
+
+static void add_head(source *s, uint32_t features) {
+#define NAME_(id, name) name,
+    static const char *const names[] = {GFX_FEATURES(NAME_)};
+#undef NAME_
+    static const char version[] = "#version 450 core\n"
+                                  "#extension GL_ARB_shader_draw_parameters : enable\n";
+    append(&s->out, version, sizeof version - 1);
+    for (int i = 0; i < GFX_FEATURE_COUNT; ++i) {
+        if (features >> i & 1u) {
+            char line[64];
+            int n = snprintf(line, sizeof line, "#define %s 1\n", names[i]);
+            append(&s->out, line, (size_t)n);
+        }
+    }
+}
+
+// ---- errors ----
+
+// Rewrites the first line of a driver's log: Mesa and Intel write "FILE:LINE(COLUMN): why", NVIDIA
+// "FILE(LINE) : why", others with "ERROR: " before.
+static void fail_with_log(const source *s, const char *log) {
+    const char *at = log;
+    while (*at && !isdigit((unsigned char)*at)) {
+        ++at;
+    }
+    int file = -1, line = 0, used = 0;
+    if (sscanf(at, "%d:%d%n", &file, &line, &used) < 2 &&
+        sscanf(at, "%d(%d)%n", &file, &line, &used) < 2) {
+        file = -1;
+    }
+    if (file < 0 || file >= s->files) {
+        core_fail("shader %s: %s", s->file[0], log);
+        return;
+    }
+    const char *why = at + used;
+    if (*why == '(') { // column
+        const char *close = strchr(why, ')');
+        why = close ? close + 1 : why;
+    }
+    why += strspn(why, ": ");
+    core_fail("shaders/%s:%d: %.*s", s->file[file], line, (int)strcspn(why, "\n"), why);
+}
+
+static GLuint compile(core_vfs *vfs, GLenum stage, const char *name, uint32_t features,
+                      uint64_t *stamp) {
+    source s = {.vfs = vfs, .stamp = *stamp};
+    add_head(&s, features);
+    GLuint shader = 0;
+    if (!add_file(&s, name)) {
+        core_fail("shader %s: %s", name, core_last_error());
+    } else {
+        shader = glCreateShader(stage);
+        const char *data = s.out.data;
+        glShaderSource(shader, 1, &data, NULL);
+        glCompileShader(shader);
+        GLint ok = 0;
+        glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+        if (!ok) {
+            char log[2048] = "";
+            glGetShaderInfoLog(shader, sizeof log, NULL, log);
+            fail_with_log(&s, log);
+            glDeleteShader(shader);
+            shader = 0;
+        }
+    }
+    *stamp = s.stamp;
+    core_free(s.out.data);
+    return shader;
+}
+
+static bool link_program(const gfx_program *p, GLuint name) {
+    glLinkProgram(name);
+    GLint ok = 0;
+    glGetProgramiv(name, GL_LINK_STATUS, &ok);
+    if (!ok) {
+        char log[2048] = "";
+        glGetProgramInfoLog(name, sizeof log, NULL, log);
+        core_fail("shaders %s and %s do not link: %s", p->vertex ? p->vertex : p->compute,
+                  p->fragment ? p->fragment : "none", log);
+    }
+    return ok;
+}
+
+// 0 + core_fail on error; p->stamp is set in any case.
+static GLuint build(core_vfs *vfs, gfx_program *p) {
+    const GLenum stage[3] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_COMPUTE_SHADER};
+    const char *const file[3] = {p->vertex, p->fragment, p->compute};
+    GLuint name = glCreateProgram();
+    bool ok = true;
+    p->stamp = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (file[i] && ok) {
+            GLuint shader = compile(vfs, stage[i], file[i], p->features, &p->stamp);
+            ok = shader != 0;
+            if (ok) {
+                glAttachShader(name, shader);
+                glDeleteShader(shader);
+            }
+        }
+    }
+    if (!ok || !link_program(p, name)) {
+        glDeleteProgram(name);
+        return 0;
+    }
+    return name;
+}
+
+// What build() would leave in p->stamp now, without compiling.
+static uint64_t stamp_of(core_vfs *vfs, const gfx_program *p) {
+    const char *const file[3] = {p->vertex, p->fragment, p->compute};
+    uint64_t stamp = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (file[i]) {
+            source s = {.vfs = vfs, .stamp = stamp};
+            add_file(&s, file[i]);
+            stamp = s.stamp;
+            core_free(s.out.data);
+        }
+    }
+    return stamp;
+}
+
+// ---- variants ----
+
+static bool same(const char *a, const char *b) { return a == b || (a && b && !strcmp(a, b)); }
+
+static GLuint get(gfx_shaders *shaders, const gfx_program *want) {
+    for (uint32_t i = 0; i < shaders->count; ++i) {
+        const gfx_program *p = &shaders->program[i];
+        if (p->features == want->features && same(p->vertex, want->vertex) &&
+            same(p->fragment, want->fragment) && same(p->compute, want->compute)) {
+            return p->name ? p->name
+                           : (core_fail_quiet("shader %s did not build",
+                                              p->vertex ? p->vertex : p->compute),
+                              0u);
+        }
+    }
+    if (shaders->count == GFX_PROGRAM_VARIANTS) {
+        core_fail("more than %d shader variants", GFX_PROGRAM_VARIANTS);
+        return 0;
+    }
+    gfx_program *p = &shaders->program[shaders->count++];
+    *p = *want;
+    p->name = build(shaders->vfs, p);
+    return p->name;
+}
+
+GLuint gfx_shaders_get(gfx_shaders *shaders, const char *vertex, const char *fragment,
+                       uint32_t features) {
+    gfx_program want = {.vertex = vertex, .fragment = fragment, .features = features};
+    return get(shaders, &want);
+}
+
+GLuint gfx_shaders_compute(gfx_shaders *shaders, const char *compute, uint32_t features) {
+    gfx_program want = {.compute = compute, .features = features};
+    return get(shaders, &want);
+}
+
+uint32_t gfx_shaders_reload(gfx_shaders *shaders) {
+    uint32_t rebuilt = 0;
+    for (uint32_t i = 0; i < shaders->count; ++i) {
+        gfx_program *p = &shaders->program[i];
+        if (stamp_of(shaders->vfs, p) == p->stamp) {
+            continue;
+        }
+        GLuint name = build(shaders->vfs, p);
+        if (name) {
+            glDeleteProgram(p->name);
+            p->name = name;
+            rebuilt++;
+        }
+    }
+    return rebuilt;
+}
+
+void gfx_shaders_release(gfx_shaders *shaders) {
+    for (uint32_t i = 0; i < shaders->count; ++i) {
+        glDeleteProgram(shaders->program[i].name);
+    }
+    shaders->count = 0;
+}
