@@ -1,0 +1,855 @@
+// The generic half of the bindings: checks arguments as their declarations say, makes objects, and
+// words the errors.
+#include "script/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { BIND_ARGS_BYTES = 2048, BIND_PATH_BYTES = 256 };
+
+// Where in the arguments the check is, for the message: "argument 1 (options), field body.radius".
+typedef struct bind_path {
+    lua_State *L;
+    script *s;
+    const char *owner; // "corsac.phys.setGravity"
+    int argument;
+    const char *argument_name;
+    char field[BIND_PATH_BYTES];
+} bind_path;
+
+static void check_value(bind_path *path, const bind_arg *arg, int index, unsigned char *out);
+
+// ---- words ----
+
+void bind_push_where(lua_State *L) {
+    lua_Debug frame;
+    for (int level = 0; lua_getstack(L, level, &frame); level++) {
+        lua_getinfo(L, "Sl", &frame);
+        if (frame.currentline > 0 && strncmp(frame.source, "=corsac/", 8) != 0) {
+            lua_pushfstring(L, "%s:%d: ", frame.short_src, frame.currentline);
+            return;
+        }
+    }
+    lua_pushliteral(L, "");
+}
+
+void bind_error(lua_State *L, const char *fmt, ...) {
+    char text[1024];
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(text, sizeof text, fmt, args);
+    va_end(args);
+    bind_push_where(L);
+    lua_pushstring(L, text);
+    lua_concat(L, 2);
+    lua_error(L);
+    __builtin_unreachable();
+}
+
+void bind_fail(lua_State *L) { bind_error(L, "%s", core_last_error()); }
+
+static int edit_distance(const char *a, const char *b) {
+    // Optimal string alignment (a swap of neighbours counts one), three rows.
+    enum { LONGEST = 48 };
+    int rows[3][LONGEST + 1], la = (int)strlen(a), lb = (int)strlen(b);
+    if (la > LONGEST || lb > LONGEST) {
+        return LONGEST;
+    }
+    for (int j = 0; j <= lb; j++) {
+        rows[0][j] = j;
+    }
+    for (int i = 1; i <= la; i++) {
+        int *now = rows[i % 3], *up = rows[(i - 1) % 3], *upper = rows[(i + 1) % 3];
+        now[0] = i;
+        for (int j = 1; j <= lb; j++) {
+            int same = a[i - 1] == b[j - 1];
+            int d = CORE_MIN(up[j] + 1, now[j - 1] + 1);
+            d = CORE_MIN(d, up[j - 1] + !same);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                d = CORE_MIN(d, upper[j - 2] + 1);
+            }
+            now[j] = d;
+        }
+    }
+    return rows[la % 3][lb];
+}
+
+static bool equal_but_case(const char *a, const char *b) {
+    while (*a && (*a | 32) == (*b | 32)) {
+        a++, b++;
+    }
+    return *a == 0 && *b == 0;
+}
+
+void bind_near_try(bind_near *near, const char *candidate) {
+    int distance = equal_but_case(near->name, candidate) ? 0 : edit_distance(near->name, candidate);
+    int limit = 1 + (int)strlen(near->name) / 4;
+    if (distance <= limit && (near->best == NULL || distance < near->distance)) {
+        near->best = candidate;
+        near->distance = distance;
+    }
+}
+
+static const struct {
+    unsigned phase;
+    const char *name;
+} phase_names[] = {{BIND_TOP, "the file's own code"}, {BIND_CONF, "corsac.conf"},
+                   {BIND_LOAD, "corsac.load"},        {BIND_FIXED, "corsac.fixed"},
+                   {BIND_STEP, "the step"},           {BIND_UPDATE, "corsac.update"},
+                   {BIND_DRAW, "corsac.draw"},        {BIND_EVENT, "corsac.event"},
+                   {BIND_QUIT, "corsac.quit"}};
+
+const char *bind_phase_name(unsigned phase) {
+    for (size_t i = 0; i < CORE_COUNT_OF(phase_names); i++) {
+        if (phase_names[i].phase == phase) {
+            return phase_names[i].name;
+        }
+    }
+    return "outside every callback";
+}
+
+static const char *kind_name(const bind_arg *arg) {
+    switch (arg->kind) {
+    case BIND_NUMBER:
+    case BIND_FLOAT: return "a number";
+    case BIND_INT: return "a whole number";
+    case BIND_BOOL: return "true or false";
+    case BIND_STRING: return "a string";
+    case BIND_ENUM: return "one of";
+    case BIND_VEC3: return arg->uniform ? "a number or a table {x, y, z}" : "a table {x, y, z}";
+    case BIND_QUAT: return "a table {x, y, z, w} or {axis = {x, y, z}, angle = radians}";
+    case BIND_COLOR: return "a table {r, g, b} or {r, g, b, a}";
+    case BIND_OBJECT: return "an object";
+    case BIND_OPTIONS: return "a table of options";
+    case BIND_LIST: return "an array of tables";
+    case BIND_NUMBERS: return "an array of numbers";
+    case BIND_FUNCTION: return "a function";
+    case BIND_TABLE: return "a table";
+    case BIND_VALUE: return "a value";
+    case BIND_REST: return "any values";
+    }
+    return "";
+}
+
+void bind_describe(const bind_arg *arg, char *out, size_t size) {
+    char values[256] = "", range[64] = "";
+    if (arg->kind == BIND_ENUM) {
+        size_t n = 0;
+        n += (size_t)snprintf(values, sizeof values, " \"");
+        for (const char *c = arg->values; *c && n + 8 < sizeof values; c++) {
+            if (*c == '|') {
+                n += (size_t)snprintf(values + n, sizeof values - n, "\", \"");
+            } else {
+                values[n++] = *c;
+                values[n] = 0;
+            }
+        }
+        snprintf(values + n, sizeof values - n, "\"");
+    } else if (arg->kind == BIND_OBJECT) {
+        snprintf(values, sizeof values, " of type %s", arg->type->name);
+    }
+    if (arg->range == BIND_POSITIVE) {
+        snprintf(range, sizeof range, " > 0");
+    } else if (arg->range == BIND_NOT_NEGATIVE) {
+        snprintf(range, sizeof range, " >= 0");
+    } else if (arg->range == BIND_BETWEEN) {
+        snprintf(range, sizeof range, " from %.14g to %.14g", arg->min, arg->max);
+    }
+    snprintf(out, size, "%s%s%s%s%s", kind_name(arg), values, range, arg->unit ? " in " : "",
+             arg->unit ? arg->unit : "");
+}
+
+static const bind_type *type_at(script *s, lua_State *L, int index) {
+    if (lua_type(L, index) != LUA_TUSERDATA || !lua_getmetatable(L, index)) {
+        return NULL;
+    }
+    const void *metatable = lua_topointer(L, -1);
+    lua_pop(L, 1);
+    for (int i = 0; i < s->type_count; i++) {
+        if (s->type[i].metatable == metatable) {
+            return s->type[i].type;
+        }
+    }
+    return NULL;
+}
+
+// "the string "abc"", "a Body", "nothing": what was given, in a reader's words.
+static void describe_value(script *s, lua_State *L, int index, char *out, size_t size) {
+    switch (lua_type(L, index)) {
+    case LUA_TNONE:
+    case LUA_TNIL: snprintf(out, size, "nothing (nil)"); break;
+    case LUA_TBOOLEAN: snprintf(out, size, "%s", lua_toboolean(L, index) ? "true" : "false"); break;
+    case LUA_TNUMBER: snprintf(out, size, "the number %.14g", lua_tonumber(L, index)); break;
+    case LUA_TSTRING: {
+        const char *text = lua_tostring(L, index);
+        snprintf(out, size, "the string \"%.40s%s\"", text, strlen(text) > 40 ? "..." : "");
+        break;
+    }
+    case LUA_TUSERDATA: {
+        const bind_type *type = type_at(s, L, index);
+        snprintf(out, size, "a %s", type ? type->name : "userdata");
+        break;
+    }
+    default: snprintf(out, size, "a %s", luaL_typename(L, index)); break;
+    }
+}
+
+CORE_NORETURN static void fail_at(bind_path *path, const char *fmt, ...) CORE_PRINTF(2, 3);
+static void fail_at(bind_path *path, const char *fmt, ...) {
+    char text[768];
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(text, sizeof text, fmt, args);
+    va_end(args);
+    bool field = path->field[0] != 0;
+    bind_error(path->L, "%s: argument %d (%s)%s%s: %s", path->owner, path->argument,
+               path->argument_name, field ? ", field " : "", path->field, text);
+}
+
+CORE_NORETURN static void expected(bind_path *path, const bind_arg *arg, int index) {
+    char want[384], got[96];
+    bind_describe(arg, want, sizeof want);
+    describe_value(path->s, path->L, index, got, sizeof got);
+    fail_at(path, "expected %s, got %s", want, got);
+}
+
+// ---- checks ----
+
+static double check_number(bind_path *path, const bind_arg *arg, int index) {
+    if (lua_type(path->L, index) != LUA_TNUMBER) {
+        expected(path, arg, index);
+    }
+    double v = lua_tonumber(path->L, index);
+    bool good = isfinite(v) && (arg->range != BIND_POSITIVE || v > 0) &&
+                (arg->range != BIND_NOT_NEGATIVE || v >= 0) &&
+                (arg->range != BIND_BETWEEN || (v >= arg->min && v <= arg->max)) &&
+                (arg->kind != BIND_INT || (v == floor(v) && fabs(v) <= 9007199254740992.0)) &&
+                (arg->kind != BIND_FLOAT || fabs(v) <= 3.4028234663852886e38);
+    if (!good) {
+        expected(path, arg, index);
+    }
+    return v;
+}
+
+static int check_enum(bind_path *path, const bind_arg *arg, int index) {
+    if (lua_type(path->L, index) != LUA_TSTRING) {
+        expected(path, arg, index);
+    }
+    const char *text = lua_tostring(path->L, index);
+    bind_near near = {.name = text};
+    const char *value = arg->values;
+    for (int i = 0;; i++) {
+        size_t length = strcspn(value, "|");
+        if (strlen(text) == length && strncmp(text, value, length) == 0) {
+            return i;
+        }
+        // Candidates become Lua strings so that `best` stays valid.
+        lua_pushlstring(path->L, value, length);
+        bind_near_try(&near, lua_tostring(path->L, -1));
+        if (value[length] == 0) {
+            break;
+        }
+        value += length + 1;
+    }
+    char want[384];
+    bind_describe(arg, want, sizeof want);
+    if (near.best) {
+        fail_at(path, "\"%.40s\" is unknown; did you mean \"%s\"?", text, near.best);
+    }
+    fail_at(path, "\"%.40s\" is unknown; expected %s", text, want);
+}
+
+// Numbers [1..count] of the table at index; false when one is missing or no finite number.
+static bool read_numbers(lua_State *L, int index, float *out, int count) {
+    for (int i = 0; i < count; i++) {
+        lua_rawgeti(L, index, i + 1);
+        bool good = lua_type(L, -1) == LUA_TNUMBER && isfinite((float)lua_tonumber(L, -1));
+        out[i] = (float)lua_tonumber(L, -1);
+        lua_pop(L, 1);
+        if (!good) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void check_vec3(bind_path *path, const bind_arg *arg, int index, core_vec3 *out) {
+    lua_State *L = path->L;
+    float v[3];
+    if (arg->uniform && lua_type(L, index) == LUA_TNUMBER) {
+        v[0] = v[1] = v[2] = (float)check_number(path, arg, index);
+    } else if (lua_type(L, index) != LUA_TTABLE || lua_objlen(L, index) != 3 ||
+               !read_numbers(L, index, v, 3)) {
+        if (lua_type(L, index) == LUA_TTABLE) {
+            fail_at(path, "expected three finite numbers {x, y, z}");
+        }
+        expected(path, arg, index);
+    }
+    for (int i = 0; i < 3; i++) {
+        if (arg->range == BIND_POSITIVE && !(v[i] > 0)) {
+            fail_at(path, "every number must be > 0, number %d is %.9g", i + 1, (double)v[i]);
+        }
+    }
+    *out = (core_vec3){v[0], v[1], v[2]};
+}
+
+static void check_quat(bind_path *path, const bind_arg *arg, int index, core_quat *out) {
+    lua_State *L = path->L;
+    float v[4];
+    if (lua_type(L, index) != LUA_TTABLE) {
+        expected(path, arg, index);
+    }
+    if (lua_objlen(L, index) == 4 && read_numbers(L, index, v, 4)) {
+        *out = core_quat_normalize((core_quat){v[0], v[1], v[2], v[3]});
+        return;
+    }
+    lua_getfield(L, index, "axis");
+    lua_getfield(L, index, "angle");
+    bool good = lua_type(L, -2) == LUA_TTABLE && lua_type(L, -1) == LUA_TNUMBER &&
+                read_numbers(L, lua_gettop(L) - 1, v, 3) && isfinite(lua_tonumber(L, -1));
+    if (!good) {
+        fail_at(path, "expected four finite numbers {x, y, z, w} or {axis = {x, y, z}, angle = radians}");
+    }
+    core_vec3 axis = core_v3_normalize((core_vec3){v[0], v[1], v[2]}, (core_vec3){0, 0, 0});
+    if (core_v3_dot(axis, axis) == 0) {
+        fail_at(path, "the axis must not be zero");
+    }
+    *out = core_quat_axis_angle(axis, (float)lua_tonumber(L, -1));
+    lua_pop(L, 2);
+}
+
+static void check_color(bind_path *path, const bind_arg *arg, int index, float *out) {
+    lua_State *L = path->L;
+    if (lua_type(L, index) != LUA_TTABLE) {
+        expected(path, arg, index);
+    }
+    int count = (int)lua_objlen(L, index);
+    out[3] = 1;
+    if ((count != 3 && count != 4) || !read_numbers(L, index, out, count)) {
+        fail_at(path, "expected three or four numbers {r, g, b} or {r, g, b, a}");
+    }
+    for (int i = 0; i < count; i++) {
+        if (out[i] < 0) {
+            fail_at(path, "colours are >= 0, number %d is %.9g", i + 1, (double)out[i]);
+        }
+    }
+}
+
+static core_handle check_object(bind_path *path, const bind_arg *arg, int index) {
+    if (type_at(path->s, path->L, index) != arg->type) {
+        expected(path, arg, index);
+    }
+    const bind_object *object = lua_touserdata(path->L, index);
+    if (!arg->type->alive(path->s, object->handle)) {
+        fail_at(path, "this %s was destroyed", arg->type->name);
+    }
+    return object->handle;
+}
+
+// The misspelt or foreign key with the smallest name (so that messages do not depend on table
+// order) is reported.
+static void check_keys(bind_path *path, const bind_arg *fields, int index) {
+    lua_State *L = path->L;
+    const char *wrong = NULL;
+    lua_pushnil(L);
+    while (lua_next(L, index)) {
+        lua_pop(L, 1);
+        if (lua_type(L, -1) != LUA_TSTRING) {
+            fail_at(path, "expected named fields only, found a key that is %s %s",
+                    lua_type(L, -1) == LUA_TNUMBER ? "the" : "a", luaL_typename(L, -1));
+        }
+        const char *key = lua_tostring(L, -1);
+        const bind_arg *field = fields;
+        while (field->name && strcmp(field->name, key) != 0) {
+            field++;
+        }
+        if (!field->name && (!wrong || strcmp(key, wrong) < 0)) {
+            wrong = key;
+        }
+    }
+    if (!wrong) {
+        return;
+    }
+    bind_near near = {.name = wrong};
+    char known[512] = "";
+    size_t n = 0;
+    for (const bind_arg *field = fields; field->name; field++) {
+        bind_near_try(&near, field->name);
+        n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", n ? ", " : "", field->name);
+        n = CORE_MIN(n, sizeof known - 1);
+    }
+    if (near.best) {
+        fail_at(path, "unknown field \"%.40s\"; did you mean \"%s\"?", wrong, near.best);
+    }
+    fail_at(path, "unknown field \"%.40s\"; fields are: %s", wrong, known);
+}
+
+static void check_options(bind_path *path, const bind_arg *arg, int index, unsigned char *out) {
+    lua_State *L = path->L;
+    if (lua_type(L, index) != LUA_TTABLE) {
+        expected(path, arg, index);
+    }
+    luaL_checkstack(L, 16, "options nest too deeply");
+    check_keys(path, arg->fields, index);
+    size_t depth = strlen(path->field);
+    for (const bind_arg *field = arg->fields; field->name; field++) {
+        snprintf(path->field + depth, sizeof path->field - depth, "%s%s", depth ? "." : "",
+                 field->name);
+        lua_pushstring(L, field->name);
+        lua_rawget(L, index);
+        int top = lua_gettop(L);
+        check_value(path, field, top, out);
+        // Strings live on in the caller's table; what the struct knows by index or pointer stays.
+        if (field->kind < BIND_OPTIONS) {
+            lua_settop(L, top - 1);
+        }
+    }
+    path->field[depth] = 0;
+}
+
+static void check_list(bind_path *path, const bind_arg *arg, int index, bind_list *out) {
+    lua_State *L = path->L;
+    if (lua_type(L, index) != LUA_TTABLE) {
+        expected(path, arg, index);
+    }
+    out->count = (uint32_t)lua_objlen(L, index);
+    out->items = lua_newuserdata(L, out->count * arg->size + 1);
+    memset(out->items, 0, out->count * arg->size);
+    size_t depth = strlen(path->field);
+    for (uint32_t i = 0; i < out->count; i++) {
+        snprintf(path->field + depth, sizeof path->field - depth, "%s%u", depth ? "." : "", i + 1);
+        lua_rawgeti(L, index, (int)i + 1);
+        check_options(path, arg, lua_gettop(L), (unsigned char *)out->items + i * arg->size);
+    }
+    path->field[depth] = 0;
+}
+
+static void check_numbers(bind_path *path, const bind_arg *arg, int index, bind_numbers *out) {
+    lua_State *L = path->L;
+    if (lua_type(L, index) != LUA_TTABLE) {
+        expected(path, arg, index);
+    }
+    out->count = (uint32_t)lua_objlen(L, index);
+    out->items = lua_newuserdata(L, out->count * sizeof(float) + 1);
+    if (!read_numbers(L, index, out->items, (int)out->count)) {
+        fail_at(path, "expected finite numbers only");
+    }
+}
+
+static void set_default(const bind_arg *arg, unsigned char *member) {
+    switch (arg->kind) {
+    case BIND_NUMBER: *(double *)(void *)member = arg->def; break;
+    case BIND_FLOAT: *(float *)(void *)member = (float)arg->def; break;
+    case BIND_INT: *(int64_t *)(void *)member = (int64_t)arg->def; break;
+    case BIND_BOOL: *(bool *)member = arg->def != 0; break;
+    case BIND_ENUM: *(int *)(void *)member = (int)arg->def; break;
+    case BIND_STRING: *(const char **)(void *)member = arg->def_text; break;
+    case BIND_VEC3: *(core_vec3 *)(void *)member = arg->def_vec; break;
+    case BIND_COLOR:
+        memcpy(member, &arg->def_vec, sizeof arg->def_vec);
+        ((float *)(void *)member)[3] = 1;
+        break;
+    default: break; // already zero
+    }
+}
+
+static void check_value(bind_path *path, const bind_arg *arg, int index, unsigned char *out) {
+    lua_State *L = path->L;
+    unsigned char *member = out + arg->at;
+    if (arg->optional && lua_isnoneornil(L, index)) {
+        set_default(arg, member);
+        return;
+    }
+    if (arg->given) {
+        *(bool *)(out + arg->given) = true;
+    }
+    switch (arg->kind) {
+    case BIND_NUMBER: *(double *)(void *)member = check_number(path, arg, index); break;
+    case BIND_FLOAT: *(float *)(void *)member = (float)check_number(path, arg, index); break;
+    case BIND_INT: *(int64_t *)(void *)member = (int64_t)check_number(path, arg, index); break;
+    case BIND_BOOL:
+        if (lua_type(L, index) != LUA_TBOOLEAN) {
+            expected(path, arg, index);
+        }
+        *(bool *)member = lua_toboolean(L, index);
+        break;
+    case BIND_STRING:
+        if (lua_type(L, index) != LUA_TSTRING) {
+            expected(path, arg, index);
+        }
+        *(const char **)(void *)member = lua_tostring(L, index);
+        break;
+    case BIND_ENUM: *(int *)(void *)member = check_enum(path, arg, index); break;
+    case BIND_VEC3: check_vec3(path, arg, index, (core_vec3 *)(void *)member); break;
+    case BIND_QUAT: check_quat(path, arg, index, (core_quat *)(void *)member); break;
+    case BIND_COLOR: check_color(path, arg, index, (float *)(void *)member); break;
+    case BIND_OBJECT: *(core_handle *)(void *)member = check_object(path, arg, index); break;
+    case BIND_OPTIONS: check_options(path, arg, index, member); break;
+    case BIND_LIST: check_list(path, arg, index, (bind_list *)(void *)member); break;
+    case BIND_NUMBERS: check_numbers(path, arg, index, (bind_numbers *)(void *)member); break;
+    case BIND_FUNCTION:
+    case BIND_TABLE:
+        if (lua_type(L, index) != (arg->kind == BIND_TABLE ? LUA_TTABLE : LUA_TFUNCTION)) {
+            expected(path, arg, index);
+        }
+        *(int *)(void *)member = index;
+        break;
+    case BIND_VALUE:
+        if (lua_isnoneornil(L, index)) {
+            expected(path, arg, index);
+        }
+        *(int *)(void *)member = index;
+        break;
+    case BIND_REST: *(int *)(void *)member = index; break;
+    }
+}
+
+static void check_phase(script *s, lua_State *L, const bind_fn *fn, const char *owner) {
+    if (fn->phases & s->phase) {
+        return;
+    }
+    const char *now = bind_phase_name(s->phase);
+    if ((fn->phases & BIND_SIM) && (s->phase & (BIND_VIEW | BIND_QUIT))) {
+        bind_error(L, "%s changes the simulation, which %s must not do; call it from corsac.fixed "
+                      "(or corsac.load)", owner, now);
+    }
+    if ((fn->phases & BIND_SIM) && (s->phase & (BIND_TOP | BIND_CONF))) {
+        bind_error(L, "%s needs the world, which does not exist yet in %s; call it from corsac.load",
+                   owner, now);
+    }
+    char allowed[256];
+    size_t n = 0;
+    for (size_t i = 0; i < CORE_COUNT_OF(phase_names) && n < sizeof allowed; i++) {
+        if (fn->phases & phase_names[i].phase) {
+            n += (size_t)snprintf(allowed + n, sizeof allowed - n, "%s%s", n ? ", " : "",
+                                  phase_names[i].name);
+        }
+    }
+    bind_error(L, "%s cannot be called from %s; call it from %s", owner, now, allowed);
+}
+
+static void check_args(bind_path *path, const bind_fn *fn, int first, unsigned char *out) {
+    lua_State *L = path->L;
+    int index = first, given = lua_gettop(L), declared = 0;
+    bool rest = false;
+    while (fn->args && fn->args[declared].name) {
+        rest = rest || fn->args[declared].kind == BIND_REST;
+        declared++;
+    }
+    if (given < first - 1 + declared - rest) {
+        lua_settop(L, first - 1 + declared - rest); // missing ones are nil
+    }
+    luaL_checkstack(L, 40, "too many arguments");
+    for (const bind_arg *arg = fn->args; arg && arg->name; arg++, index++) {
+        path->argument = index - first + 1;
+        path->argument_name = arg->name;
+        check_value(path, arg, index, out);
+    }
+    if (!rest && given >= index) {
+        bind_error(L, "%s: expected %d argument%s, got %d", path->owner, index - first,
+                   index - first == 1 ? "" : "s", given - first + 1);
+    }
+}
+
+// Upvalues: the declaration, the script, the owner's name, and the Lua half when it has one.
+static int call_function(lua_State *L) {
+    const bind_fn *fn = lua_touserdata(L, lua_upvalueindex(1));
+    script *s = lua_touserdata(L, lua_upvalueindex(2));
+    bind_path path = {.L = L, .s = s, .owner = lua_tostring(L, lua_upvalueindex(3))};
+    _Alignas(16) unsigned char args[BIND_ARGS_BYTES];
+    memset(args, 0, fn->size);
+    int top = lua_gettop(L);
+    check_phase(s, L, fn, path.owner);
+    check_args(&path, fn, 1, args);
+    if (fn->run) {
+        return fn->run(s, L, args);
+    }
+    lua_settop(L, top);
+    lua_pushvalue(L, lua_upvalueindex(4));
+    lua_insert(L, 1);
+    lua_call(L, top, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+static int call_module(lua_State *L) { // corsac.expect(...): drop the module itself
+    lua_remove(L, 1);
+    return call_function(L);
+}
+
+static int call_method(lua_State *L) {
+    const bind_fn *fn = lua_touserdata(L, lua_upvalueindex(1));
+    script *s = lua_touserdata(L, lua_upvalueindex(2));
+    const bind_type *type = lua_touserdata(L, lua_upvalueindex(4));
+    bind_path path = {.L = L, .s = s, .owner = lua_tostring(L, lua_upvalueindex(3))};
+    if (type_at(s, L, 1) != type) {
+        char got[96];
+        describe_value(s, L, 1, got, sizeof got);
+        bind_error(L, "%s: expected a %s before the colon, got %s; write object:%s(...)",
+                   path.owner, type->name, got, fn->name);
+    }
+    const bind_object *object = lua_touserdata(L, 1);
+    if (!type->alive(s, object->handle)) {
+        if (strcmp(fn->name, "isDestroyed") == 0) {
+            lua_pushboolean(L, 1);
+            return 1;
+        }
+        bind_error(L, "%s: this %s was destroyed", path.owner, type->name);
+    }
+    _Alignas(16) unsigned char args[BIND_ARGS_BYTES];
+    memset(args, 0, fn->size);
+    memcpy(args, &object->handle, sizeof object->handle);
+    check_phase(s, L, fn, path.owner);
+    check_args(&path, fn, 2, args);
+    return fn->run(s, L, args);
+}
+
+// ---- names that do not exist ----
+
+static int unknown_name(lua_State *L) {
+    const char *owner = lua_tostring(L, lua_upvalueindex(1));
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+    bind_near near = {.name = name};
+    lua_pushnil(L);
+    const char *best = NULL;
+    int distance = 0;
+    while (lua_next(L, lua_upvalueindex(2))) { // names of the table or the class
+        lua_pop(L, 1);
+        if (lua_type(L, -1) == LUA_TSTRING && lua_tostring(L, -1)[0] != '_') {
+            const char *candidate = lua_tostring(L, -1);
+            near.best = NULL;
+            bind_near_try(&near, candidate);
+            bool better = near.best && (!best || near.distance < distance ||
+                                        (near.distance == distance && strcmp(candidate, best) < 0));
+            if (better) {
+                best = candidate;
+                distance = near.distance;
+            }
+        }
+    }
+    if (best) {
+        bind_error(L, "%s has no \"%.40s\"; did you mean \"%s\"?", owner, name, best);
+    }
+    bind_error(L, "%s has no \"%.40s\"", owner, name);
+}
+
+static int refuse_assignment(lua_State *L) {
+    const char *owner = lua_tostring(L, lua_upvalueindex(1));
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+    bind_error(L, "%s holds no fields of yours (\"%.40s\"); keep your data in a table of your own, "
+                  "with the object as key", owner, name);
+}
+
+static const char *const callbacks[] = {"load", "fixed", "update", "draw",
+                                        "event", "quit", "conf",   "reload"};
+
+static int assign_callback(lua_State *L) {
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
+    bind_near near = {.name = name};
+    for (size_t i = 0; i < CORE_COUNT_OF(callbacks); i++) {
+        if (strcmp(callbacks[i], name) == 0) {
+            if (!lua_isfunction(L, 3) && !lua_isnil(L, 3)) {
+                bind_error(L, "corsac.%s must be a function, got a %s", name, luaL_typename(L, 3));
+            }
+            lua_rawset(L, 1);
+            return 0;
+        }
+        bind_near_try(&near, callbacks[i]);
+    }
+    if (near.best) {
+        bind_error(L, "corsac has no callback \"%.40s\"; did you mean \"%s\"?", name, near.best);
+    }
+    bind_error(L, "corsac has no callback \"%.40s\"; callbacks are load, fixed, update, draw, event, "
+                  "quit, conf, reload", name);
+}
+
+static int callback_or_unknown(lua_State *L) {
+    for (size_t i = 0; lua_type(L, 2) == LUA_TSTRING && i < CORE_COUNT_OF(callbacks); i++) {
+        if (strcmp(callbacks[i], lua_tostring(L, 2)) == 0) {
+            return 0; // not defined: nil
+        }
+    }
+    return unknown_name(L);
+}
+
+// ---- objects ----
+
+void bind_push_vec3(lua_State *L, core_vec3 v) {
+    lua_pushnumber(L, (double)v.x);
+    lua_pushnumber(L, (double)v.y);
+    lua_pushnumber(L, (double)v.z);
+}
+
+static script_type_slot *slot_of(script *s, const bind_type *type) {
+    for (int i = 0; i < s->type_count; i++) {
+        if (s->type[i].type == type) {
+            return &s->type[i];
+        }
+    }
+    return NULL;
+}
+
+void bind_push(script *s, lua_State *L, const bind_type *type, core_handle h) {
+    if (core_handle_is_null(h)) {
+        lua_pushnil(L);
+        return;
+    }
+    const script_type_slot *slot = slot_of(s, type);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, slot->cache_ref);
+    lua_rawgeti(L, -1, (int)h.index);
+    const bind_object *old = lua_touserdata(L, -1);
+    if (old && core_handle_equal(old->handle, h)) {
+        lua_remove(L, -2);
+        return;
+    }
+    lua_pop(L, 1);
+    bind_object *object = lua_newuserdata(L, sizeof *object);
+    *object = (bind_object){.handle = h, .type = type};
+    lua_rawgeti(L, LUA_REGISTRYINDEX, slot->metatable_ref);
+    lua_setmetatable(L, -2);
+    lua_pushvalue(L, -1);
+    lua_rawseti(L, -3, (int)h.index);
+    lua_remove(L, -2);
+}
+
+core_handle bind_object_handle(script *s, lua_State *L, int index, const bind_type *type) {
+    if (type_at(s, L, index) != type) {
+        return CORE_NULL_HANDLE;
+    }
+    return ((const bind_object *)lua_touserdata(L, index))->handle;
+}
+
+static int object_text(lua_State *L) {
+    const bind_object *object = lua_touserdata(L, 1);
+    if (!object) {
+        lua_pushliteral(L, "object");
+        return 1;
+    }
+    lua_pushfstring(L, "%s %d", object->type->name, (int)object->handle.index);
+    return 1;
+}
+
+// ---- installation ----
+
+static void push_closure(script *s, lua_State *L, const bind_fn *fn, const char *owner,
+                         const bind_type *type) {
+    lua_pushlightuserdata(L, (void *)(uintptr_t)fn);
+    lua_pushlightuserdata(L, s);
+    bool method = type != NULL, itself = fn->name[0] == 0;
+    lua_pushfstring(L, "%s%s%s", owner, method ? ":" : itself ? "" : ".", fn->name);
+    if (method) {
+        lua_pushlightuserdata(L, (void *)(uintptr_t)type);
+        lua_pushcclosure(L, call_method, 4);
+        return;
+    }
+    if (!fn->run) { // its Lua half was left in the registry by the prelude
+        lua_getfield(L, LUA_REGISTRYINDEX, "corsac.lua");
+        lua_getfield(L, -1, lua_tostring(L, -2));
+        lua_remove(L, -2);
+    }
+    lua_pushcclosure(L, itself ? call_module : call_function, fn->run ? 3 : 4);
+}
+
+static void install_type(script *s, lua_State *L, const bind_type *type, bool mod) {
+    script_type_slot *slot = &s->type[s->type_count++];
+    slot->type = type;
+    lua_newtable(L); // methods
+    for (const bind_fn *fn = type->methods; fn->name; fn++) {
+        if (!mod || fn->mod) {
+            push_closure(s, L, fn, type->name, type);
+            lua_setfield(L, -2, fn->name);
+        }
+    }
+    lua_newtable(L); // unknown methods
+    lua_pushstring(L, type->name);
+    lua_pushvalue(L, -3);
+    lua_pushcclosure(L, unknown_name, 2);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+
+    lua_newtable(L); // metatable of the objects
+    slot->metatable = lua_topointer(L, -1);
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, "__index");
+    lua_pushstring(L, type->name);
+    lua_pushcclosure(L, refuse_assignment, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_pushcfunction(L, object_text);
+    lua_setfield(L, -2, "__tostring");
+    lua_pushstring(L, type->name);
+    lua_setfield(L, -2, "__metatable");
+    slot->metatable_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+    lua_pop(L, 1);
+
+    lua_newtable(L); // cache
+    lua_newtable(L);
+    lua_pushliteral(L, "v");
+    lua_setfield(L, -2, "__mode");
+    lua_setmetatable(L, -2);
+    slot->cache_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+// Pushes the table at a dotted path under the globals, making what is missing.
+static void push_module(lua_State *L, const char *path) {
+    lua_pushvalue(L, LUA_GLOBALSINDEX);
+    while (*path) {
+        size_t length = strcspn(path, ".");
+        lua_pushlstring(L, path, length);
+        lua_rawget(L, -2);
+        if (!lua_istable(L, -1)) {
+            lua_pop(L, 1);
+            lua_newtable(L);
+            lua_pushlstring(L, path, length);
+            lua_pushvalue(L, -2);
+            lua_rawset(L, -4);
+        }
+        lua_remove(L, -2);
+        path += length + (path[length] == '.');
+    }
+}
+
+static void install_module(script *s, lua_State *L, const bind_module *module, bool mod) {
+    push_module(L, module->path);
+    if (!lua_getmetatable(L, -1)) {
+        lua_newtable(L);
+        bool root = strcmp(module->path, "corsac") == 0;
+        lua_pushstring(L, module->path);
+        lua_pushvalue(L, -3);
+        lua_pushcclosure(L, root ? callback_or_unknown : unknown_name, 2);
+        lua_setfield(L, -2, "__index");
+        lua_pushstring(L, module->path);
+        lua_pushcclosure(L, root ? assign_callback : refuse_assignment, 1);
+        lua_setfield(L, -2, "__newindex");
+        lua_pushliteral(L, "corsac");
+        lua_setfield(L, -2, "__metatable");
+        lua_pushvalue(L, -1);
+        lua_setmetatable(L, -3);
+    }
+    for (const bind_fn *fn = module->functions; fn->name; fn++) {
+        if (mod && !fn->mod) {
+            continue;
+        }
+        push_closure(s, L, fn, module->path, NULL);
+        if (fn->name[0] == 0) {
+            lua_setfield(L, -2, "__call");
+        } else {
+            lua_pushstring(L, fn->name);
+            lua_insert(L, -2);
+            lua_rawset(L, -4);
+        }
+    }
+    lua_pop(L, 2);
+}
+
+void bind_install(script *s, lua_State *L, bool mod) {
+    for (int r = 0; bind_rooms[r]; r++) {
+        for (int t = 0; bind_rooms[r]->types && bind_rooms[r]->types[t]; t++) {
+            install_type(s, L, bind_rooms[r]->types[t], mod);
+        }
+    }
+    for (int r = 0; bind_rooms[r]; r++) {
+        for (const bind_module *m = bind_rooms[r]->modules; m->path; m++) {
+            install_module(s, L, m, mod);
+        }
+    }
+}

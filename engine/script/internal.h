@@ -1,0 +1,72 @@
+// What the files of this room share: the state behind `script`.
+#ifndef SCRIPT_INTERNAL_H
+#define SCRIPT_INTERNAL_H
+
+#include "core/rng.h"
+#include "script/bind.h"
+
+#include <lauxlib.h>
+
+enum { SCRIPT_TYPES_MAX = 32, SCRIPT_EXPECT_MAX = 256, SCRIPT_PARAM_MAX = 256 };
+
+typedef struct script_type_slot {
+    const bind_type *type;
+    const void *metatable; // identity only; Lua owns it
+    int metatable_ref;
+    int cache_ref; // weak-valued table: handle index -> userdata
+} script_type_slot;
+
+typedef enum script_op { OP_LE, OP_LT, OP_GE, OP_GT, OP_EQ, OP_NE } script_op;
+#define SCRIPT_OPS "<=|<|>=|>|==|~="
+typedef struct script_expect {
+    char metric[96], where[160];
+    script_op op;
+    double value;
+} script_expect;
+
+struct script {
+    lua_State *L;
+    scene *scene;
+    script_host host;
+    bool headless, keep_going, mod;
+    uint32_t phase; // one bind_phase bit: what runs now
+    script_type_slot type[SCRIPT_TYPES_MAX];
+    int type_count;
+    script_expect *expect;
+    int expect_count;
+    char (*param)[64];
+    int param_count;
+    const char *const *argv;
+    int argc;
+    int error_count;
+    char *last_error;
+    uint32_t stopped; // bind_phase bits of callbacks that an error has stopped
+    char *run_data;   // JSON handed to the next scene by corsac.run
+    double time;      // s of simulated time
+    int corsac_ref;   // the table `corsac`
+    int error_screen_ref; // scripts/corsac/error.lua
+    char root[200];   // virtual folder of the game with its '/', "" for the tree's root
+};
+
+// Lua's userdata of an object.
+typedef struct bind_object {
+    core_handle handle;
+    const bind_type *type;
+} bind_object;
+
+// The engine's C side of Lua's base library: ordered pairs, printable names, seeded random numbers,
+// no clock, no files (state.c).
+lua_State *script_state_create(script *s);
+// Embedded text of a file of scripts/corsac ("boot.lua"); NULL when there is none.
+const char *script_embedded(const char *name, size_t *size);
+// Loads a chunk from the mounted files, else from the embedded ones; leaves the function on the
+// stack, or false with a message there.
+bool script_load_chunk(script *s, lua_State *L, const char *virtual_path);
+// Calls the function under `argc` arguments with traceback; records the error. Phase is set for
+// the call.
+bool script_call(script *s, uint32_t phase, int argc, int results);
+// Records an error text (top of the stack, popped) as the run's.
+void script_record_error(script *s);
+bool script_compare(double a, script_op op, double b);
+
+#endif

@@ -1,0 +1,290 @@
+// The public side: a script's life, its callbacks, and what happens when one fails.
+#include "script/script.h"
+
+#include "core/log.h"
+#include "script/internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SCRIPT_COOKIE = 0x5c21b7, SCRIPT_TRACE_LEVELS = 24 };
+
+script_desc script_desc_default(void) { return (script_desc){.cookie = SCRIPT_COOKIE}; }
+
+script *script_create(const script_desc *desc) {
+    if (!desc || desc->cookie != SCRIPT_COOKIE) {
+        core_fail("script_create: the description was not made by script_desc_default()");
+        return NULL;
+    }
+    if (!desc->scene) {
+        core_fail("script_create: desc.scene is NULL; a script belongs to a scene");
+        return NULL;
+    }
+    script *s = core_alloc(sizeof *s);
+    s->scene = desc->scene;
+    s->host = desc->host ? *desc->host : (script_host){0};
+    s->headless = desc->headless;
+    s->keep_going = desc->keep_going;
+    s->argc = desc->argc;
+    s->argv = desc->argv;
+    s->expect = core_alloc(SCRIPT_EXPECT_MAX * sizeof *s->expect);
+    s->param = core_alloc(SCRIPT_PARAM_MAX * sizeof *s->param);
+    s->phase = BIND_TOP;
+    s->L = script_state_create(s);
+    if (!s->L) {
+        script_destroy(s);
+        return NULL;
+    }
+    return s;
+}
+
+void script_destroy(script *s) {
+    if (!s) {
+        return;
+    }
+    if (s->L) {
+        lua_close(s->L);
+    }
+    core_free(s->expect);
+    core_free(s->param);
+    core_free(s->last_error);
+    core_free(s->run_data);
+    core_free(s);
+}
+
+// ---- errors ----
+
+static char *copy_text(const char *text) {
+    size_t size = strlen(text) + 1;
+    return memcpy(core_alloc(size), text, size);
+}
+
+// "attempt to index global 'corsca' (a nil value)": names the nearest global.
+static void push_global_hint(lua_State *L, const char *message) {
+    const char *at = strstr(message, "global '");
+    const char *end = at ? strchr(at + 8, '\'') : NULL;
+    if (!end || !strstr(end, "(a nil value)")) {
+        lua_pushliteral(L, "");
+        return;
+    }
+    lua_pushlstring(L, at + 8, (size_t)(end - at - 8));
+    bind_near near = {.name = lua_tostring(L, -1)};
+    lua_pushnil(L);
+    while (lua_next(L, LUA_GLOBALSINDEX)) {
+        lua_pop(L, 1);
+        if (lua_type(L, -1) == LUA_TSTRING) {
+            bind_near_try(&near, lua_tostring(L, -1));
+        }
+    }
+    if (near.best) {
+        lua_pushfstring(L, "; did you mean '%s'?", near.best);
+    } else {
+        lua_pushliteral(L, "; no such global is defined");
+    }
+    lua_remove(L, -2);
+}
+
+static void push_traceback(lua_State *L) {
+    lua_Debug frame;
+    luaL_Buffer text;
+    luaL_buffinit(L, &text);
+    int lines = 0;
+    for (int level = 0; lines < SCRIPT_TRACE_LEVELS && lua_getstack(L, level, &frame); level++) {
+        char line[300];
+        lua_getinfo(L, "Sln", &frame);
+        if (frame.currentline <= 0 || strncmp(frame.source, "=corsac/", 8) == 0) {
+            continue;
+        }
+        bool main = strcmp(frame.what, "main") == 0;
+        snprintf(line, sizeof line, "\n    %s:%d: in %s%s%s", frame.short_src, frame.currentline,
+                 main ? "the file's own code" : frame.name ? "'" : "a function",
+                 main ? "" : frame.name ? frame.name : "", main || !frame.name ? "" : "'");
+        luaL_addstring(&text, line);
+        lines++;
+    }
+    luaL_pushresult(&text);
+}
+
+// Message handler of every protected call.
+static int with_traceback(lua_State *L) {
+    if (lua_type(L, 1) != LUA_TSTRING) {
+        bool text = lua_type(L, 1) == LUA_TNUMBER || luaL_callmeta(L, 1, "__tostring");
+        if (!text) {
+            lua_pushfstring(L, "error raised with a %s instead of a text", luaL_typename(L, 1));
+        }
+        lua_replace(L, 1);
+        lua_settop(L, 1);
+        lua_tostring(L, 1);
+    }
+    push_global_hint(L, lua_tostring(L, 1));
+    push_traceback(L);
+    lua_concat(L, 3);
+    return 1;
+}
+
+void script_record_error(script *s) {
+    const char *text = lua_tostring(s->L, -1);
+    core_free(s->last_error);
+    s->last_error = copy_text(text ? text : "error without a text");
+    s->error_count++;
+    core_log(CORE_LOG_ERROR, "%s", s->last_error);
+    lua_pop(s->L, 1);
+}
+
+bool script_call(script *s, uint32_t phase, int argc, int results) {
+    lua_State *L = s->L;
+    int base = lua_gettop(L) - argc;
+    uint32_t before = s->phase;
+    lua_pushcfunction(L, with_traceback);
+    lua_insert(L, base);
+    s->phase = phase;
+    bool good = lua_pcall(L, argc, results, base) == 0;
+    s->phase = before;
+    lua_remove(L, base);
+    if (!good) {
+        script_record_error(s);
+    }
+    return good;
+}
+
+// ---- callbacks ----
+
+// Pushes corsac.NAME when it is a function and has not been stopped by an error.
+static bool push_callback(script *s, const char *name, uint32_t phase) {
+    lua_State *L = s->L;
+    if (s->stopped & phase) {
+        return false;
+    }
+    lua_rawgeti(L, LUA_REGISTRYINDEX, s->corsac_ref);
+    lua_pushstring(L, name);
+    lua_rawget(L, -2);
+    lua_remove(L, -2);
+    if (!lua_isfunction(L, -1)) {
+        lua_pop(L, 1);
+        return false;
+    }
+    return true;
+}
+
+static bool call_callback(script *s, uint32_t phase, int argc) {
+    if (script_call(s, phase, argc, 0)) {
+        return true;
+    }
+    if (!s->keep_going) {
+        s->stopped |= phase;
+    }
+    return false;
+}
+
+bool script_load(script *s) {
+    if (!push_callback(s, "load", BIND_LOAD)) {
+        return !(s->stopped & BIND_LOAD);
+    }
+    lua_createtable(s->L, s->argc, 0);
+    for (int i = 0; i < s->argc; i++) {
+        lua_pushstring(s->L, s->argv[i]);
+        lua_rawseti(s->L, -2, i + 1);
+    }
+    return call_callback(s, BIND_LOAD, 1);
+}
+
+void script_fixed(script *s, float dt) {
+    if (push_callback(s, "fixed", BIND_FIXED)) {
+        lua_pushnumber(s->L, (double)dt);
+        call_callback(s, BIND_FIXED, 1);
+    }
+    s->time += (double)dt;
+}
+
+void script_update(script *s, double dt) {
+    if (push_callback(s, "update", BIND_UPDATE)) {
+        lua_pushnumber(s->L, dt);
+        call_callback(s, BIND_UPDATE, 1);
+    }
+}
+
+void script_draw(script *s) {
+    if (push_callback(s, "draw", BIND_DRAW)) {
+        call_callback(s, BIND_DRAW, 0);
+    }
+    if (s->stopped && !s->headless) {
+        lua_rawgeti(s->L, LUA_REGISTRYINDEX, s->error_screen_ref);
+        lua_pushstring(s->L, s->last_error);
+        script_call(s, BIND_DRAW, 1, 0);
+    }
+}
+
+void script_event(script *s, const char *name, const char *text, const double *values, int count) {
+    if (!push_callback(s, "event", BIND_EVENT)) {
+        return;
+    }
+    lua_pushstring(s->L, name);
+    int argc = 1;
+    if (text) {
+        lua_pushstring(s->L, text);
+        argc++;
+    }
+    for (int i = 0; i < count; i++, argc++) {
+        lua_pushnumber(s->L, values[i]);
+    }
+    call_callback(s, BIND_EVENT, argc);
+}
+
+void script_quit(script *s) {
+    if (push_callback(s, "quit", BIND_QUIT)) {
+        call_callback(s, BIND_QUIT, 0);
+    }
+}
+
+// ---- what the app asks ----
+
+int script_error_count(const script *s) { return s->error_count; }
+const char *script_last_error(const script *s) { return s->last_error ? s->last_error : ""; }
+size_t script_bytes(const script *s) {
+    return (size_t)lua_gc(s->L, LUA_GCCOUNT, 0) * 1024 + (size_t)lua_gc(s->L, LUA_GCCOUNTB, 0);
+}
+const char *script_run_data(const script *s) { return s->run_data; }
+
+bool script_param_declared(const script *s, const char *name) {
+    for (int i = 0; i < s->param_count; i++) {
+        if (strcmp(s->param[i], name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool script_compare(double a, script_op op, double b) {
+    switch (op) {
+    case OP_LE: return a <= b;
+    case OP_LT: return a < b;
+    case OP_GE: return a >= b;
+    case OP_GT: return a > b;
+    case OP_EQ: return a == b;
+    case OP_NE: return a != b;
+    }
+    return false;
+}
+
+int script_check_expectations(script *s) {
+    static const char *const ops[] = {"<=", "<", ">=", ">", "==", "~="};
+    int failed = 0;
+    for (int i = 0; i < s->expect_count; i++) {
+        const script_expect *e = &s->expect[i];
+        bool known = false;
+        double value = s->host.metric ? s->host.metric(s->host.ctx, e->metric, &known) : 0;
+        if (known && script_compare(value, e->op, e->value)) {
+            continue;
+        }
+        failed++;
+        if (known) {
+            core_log(CORE_LOG_ERROR, "%sexpected %s %s %.9g, it is %.9g", e->where, e->metric,
+                     ops[e->op], e->value, value);
+        } else {
+            core_log(CORE_LOG_ERROR, "%sexpected %s %s %.9g, but no such metric exists", e->where,
+                     e->metric, ops[e->op], e->value);
+        }
+    }
+    return failed;
+}

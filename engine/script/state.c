@@ -1,0 +1,193 @@
+// Makes Lua states: LuaJIT's libraries cut down and remade by scripts/corsac/base.lua, with the C
+// half of it here.
+#include "core/log.h"
+#include "script/embedded.h"
+#include "script/internal.h"
+#include "script/libc.h"
+#include "script/order.h"
+
+#include <lualib.h>
+#include <stdio.h>
+#include <string.h>
+
+static script *self(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
+
+const char *script_embedded(const char *name, size_t *size) {
+    for (const script_embedded_file *file = script_embedded_files; file->name; file++) {
+        if (strcmp(file->name, name) == 0) {
+            *size = file->size;
+            return file->text;
+        }
+    }
+    return NULL;
+}
+
+static bool load_text(lua_State *L, const char *text, size_t size, const char *chunk) {
+    return luaL_loadbufferx(L, text, size, chunk, "t") == 0;
+}
+
+bool script_load_chunk(script *s, lua_State *L, const char *path) {
+    char chunk[300];
+    bool internal = strncmp(path, "corsac/", 7) == 0;
+    core_vfs *vfs = s->scene ? scene_vfs(s->scene) : NULL;
+    snprintf(chunk, sizeof chunk, "%s%s", internal ? "=" : "@", path);
+    size_t size;
+    if (vfs && (!internal || core_vfs_exists(vfs, path))) {
+        char *text = core_vfs_read(vfs, path, &size);
+        if (!text) {
+            lua_pushstring(L, core_last_error());
+            return false;
+        }
+        bool good = load_text(L, text, size, chunk);
+        core_free(text);
+        return good;
+    }
+    const char *text = internal ? script_embedded(path + 7, &size) : NULL;
+    if (!text) {
+        lua_pushfstring(L, "no file \"%s\"", path);
+        return false;
+    }
+    return load_text(L, text, size, chunk);
+}
+
+// ---- the functions base.lua builds on ----
+
+static int engine_simulating(lua_State *L) {
+    lua_pushboolean(L, (self(L)->phase & (BIND_SIM | BIND_TOP | BIND_CONF)) != 0);
+    return 1;
+}
+
+static core_rng *stream(script *s) {
+    bool view = (s->phase & BIND_VIEW) != 0;
+    return scene_rng(s->scene, view ? CORE_RNG_VIEW : CORE_RNG_SIM);
+}
+
+static int engine_random(lua_State *L) {
+    lua_pushnumber(L, core_rng_double(stream(self(L))));
+    return 1;
+}
+
+static int engine_reseed(lua_State *L) {
+    core_rng *rng = stream(self(L));
+    double seed = lua_tonumber(L, 1);
+    uint64_t bits;
+    memcpy(&bits, &seed, sizeof bits);
+    *rng = core_rng_make(bits, rng->stream);
+    return 0;
+}
+
+static int engine_print(lua_State *L) {
+    core_log(CORE_LOG_INFO, "%s", luaL_checkstring(L, 1));
+    return 0;
+}
+
+static int engine_describe(lua_State *L) {
+    if (lua_type(L, 1) == LUA_TSTRING) {
+        lua_pushfstring(L, "the string \"%s\"", lua_tostring(L, 1));
+    } else if (lua_type(L, 1) == LUA_TNUMBER) {
+        lua_pushfstring(L, "the number %s", lua_tostring(L, 1));
+    } else if (lua_isnoneornil(L, 1)) {
+        lua_pushliteral(L, "nothing (nil)");
+    } else {
+        lua_pushfstring(L, "a %s", luaL_typename(L, 1));
+    }
+    return 1;
+}
+
+static int engine_load_file(lua_State *L) {
+    if (script_load_chunk(self(L), L, luaL_checkstring(L, 1))) {
+        return 1;
+    }
+    lua_pushnil(L);
+    lua_insert(L, -2);
+    return 2;
+}
+
+// findModule("a.b") -> chunk, path or nil, reason.
+static int engine_find_module(lua_State *L) {
+    script *s = self(L);
+    static const char *const endings[] = {".lua", "/init.lua"};
+    char name[200], path[420];
+    snprintf(name, sizeof name, "%s", luaL_checkstring(L, 1));
+    for (char *c = name; *c; c++) {
+        *c = *c == '.' ? '/' : *c;
+    }
+    core_vfs *vfs = scene_vfs(s->scene);
+    for (size_t i = 0; i < CORE_COUNT_OF(endings); i++) {
+        snprintf(path, sizeof path, "%s%s%s", s->root, name, endings[i]);
+        if (!vfs || !core_vfs_exists(vfs, path)) {
+            continue;
+        }
+        if (!script_load_chunk(s, L, path)) {
+            return lua_error(L);
+        }
+        lua_pushstring(L, path);
+        return 2;
+    }
+    lua_pushnil(L);
+    lua_pushfstring(L, "no file \"%s%s.lua\" or \"%s%s/init.lua\" in the game's folder", s->root,
+                    name, s->root, name);
+    return 2;
+}
+
+static const luaL_Reg engine_functions[] = {
+    {"keys", script_order_keys},         {"next", script_order_next},
+    {"simulating", engine_simulating},   {"random", engine_random},
+    {"reseed", engine_reseed},           {"print", engine_print},
+    {"describe", engine_describe},       {"loadFile", engine_load_file},
+    {"findModule", engine_find_module},  {NULL, NULL}};
+
+static void push_engine(script *s, lua_State *L) {
+    lua_newtable(L);
+    for (const luaL_Reg *fn = engine_functions; fn->name; fn++) {
+        lua_pushlightuserdata(L, s);
+        lua_pushcclosure(L, fn->func, 1);
+        lua_setfield(L, -2, fn->name);
+    }
+    lua_newtable(L); // Lua halves of bindings, by full name
+    lua_pushvalue(L, -1);
+    lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
+    lua_setfield(L, -2, "lua");
+}
+
+// Runs scripts/corsac/NAME.lua with the engine table as argument.
+static bool run_part(script *s, lua_State *L, const char *name) {
+    char path[64];
+    snprintf(path, sizeof path, "corsac/%s.lua", name);
+    lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
+    if (script_load_chunk(s, L, path)) {
+        lua_insert(L, -2);
+        if (lua_pcall(L, 1, 0, 0) == 0) {
+            return true;
+        }
+    }
+    core_fail("script: %s", lua_tostring(L, -1));
+    return false;
+}
+
+lua_State *script_state_create(script *s) {
+    script_libc_fixed_seed(true);
+    lua_State *L = luaL_newstate();
+    script_libc_fixed_seed(false);
+    if (!L) {
+        core_fail("script: no memory for a Lua state");
+        return NULL;
+    }
+    luaL_openlibs(L);
+    push_engine(s, L);
+    lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
+    bool good = run_part(s, L, "base");
+    if (good) {
+        bind_install(s, L, false);
+        lua_getfield(L, LUA_GLOBALSINDEX, "corsac");
+        s->corsac_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+        lua_pushnil(L);
+        lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
+        good = run_part(s, L, "boot");
+    }
+    if (!good) {
+        lua_close(L);
+        return NULL;
+    }
+    return L;
+}
