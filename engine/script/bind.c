@@ -2,8 +2,11 @@
 // words the errors.
 #include "script/internal.h"
 
+#include "core/nearest.h"
+
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { BIND_ARGS_BYTES = 2048, BIND_PATH_BYTES = 256 };
@@ -49,45 +52,9 @@ void bind_error(lua_State *L, const char *fmt, ...) {
 
 void bind_fail(lua_State *L) { bind_error(L, "%s", core_last_error()); }
 
-static int edit_distance(const char *a, const char *b) {
-    // Optimal string alignment (a swap of neighbours counts one), three rows.
-    enum { LONGEST = 48 };
-    int rows[3][LONGEST + 1], la = (int)strlen(a), lb = (int)strlen(b);
-    if (la > LONGEST || lb > LONGEST) {
-        return LONGEST;
-    }
-    for (int j = 0; j <= lb; j++) {
-        rows[0][j] = j;
-    }
-    for (int i = 1; i <= la; i++) {
-        int *now = rows[i % 3], *up = rows[(i - 1) % 3], *upper = rows[(i + 1) % 3];
-        now[0] = i;
-        for (int j = 1; j <= lb; j++) {
-            int same = a[i - 1] == b[j - 1];
-            int d = CORE_MIN(up[j] + 1, now[j - 1] + 1);
-            d = CORE_MIN(d, up[j - 1] + !same);
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                d = CORE_MIN(d, upper[j - 2] + 1);
-            }
-            now[j] = d;
-        }
-    }
-    return rows[la % 3][lb];
-}
-
-static bool equal_but_case(const char *a, const char *b) {
-    while (*a && (*a | 32) == (*b | 32)) {
-        a++, b++;
-    }
-    return *a == 0 && *b == 0;
-}
-
-void bind_near_try(bind_near *near, const char *candidate) {
-    int distance = equal_but_case(near->name, candidate) ? 0 : edit_distance(near->name, candidate);
-    int limit = 1 + (int)strlen(near->name) / 4;
-    if (distance <= limit && (near->best == NULL || distance < near->distance)) {
-        near->best = candidate;
-        near->distance = distance;
+void bind_names_add(bind_names *names, const char *name) {
+    if (names->count < CORE_COUNT_OF(names->name)) {
+        names->name[names->count++] = name;
     }
 }
 
@@ -237,16 +204,15 @@ static int check_enum(bind_path *path, const bind_arg *arg, int index) {
         expected(path, arg, index);
     }
     const char *text = lua_tostring(path->L, index);
-    bind_near near = {.name = text};
+    bind_names names = {.count = 0};
     const char *value = arg->values;
     for (int i = 0;; i++) {
         size_t length = strcspn(value, "|");
         if (strlen(text) == length && strncmp(text, value, length) == 0) {
             return i;
         }
-        // Candidates become Lua strings so that `best` stays valid.
-        lua_pushlstring(path->L, value, length);
-        bind_near_try(&near, lua_tostring(path->L, -1));
+        lua_pushlstring(path->L, value, length); // a Lua string of its own for the list
+        bind_names_add(&names, lua_tostring(path->L, -1));
         if (value[length] == 0) {
             break;
         }
@@ -254,8 +220,9 @@ static int check_enum(bind_path *path, const bind_arg *arg, int index) {
     }
     char want[384];
     bind_describe(arg, want, sizeof want);
-    if (near.best) {
-        fail_at(path, "\"%.40s\" is unknown; did you mean \"%s\"?", text, near.best);
+    const char *near = core_nearest(text, names.name, names.count);
+    if (near) {
+        fail_at(path, "\"%.40s\" is unknown; did you mean \"%s\"?", text, near);
     }
     fail_at(path, "\"%.40s\" is unknown; expected %s", text, want);
 }
@@ -371,16 +338,17 @@ static void check_keys(bind_path *path, const bind_arg *fields, int index) {
     if (!wrong) {
         return;
     }
-    bind_near near = {.name = wrong};
+    bind_names names = {.count = 0};
     char known[512] = "";
     size_t n = 0;
     for (const bind_arg *field = fields; field->name; field++) {
-        bind_near_try(&near, field->name);
+        bind_names_add(&names, field->name);
         n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", n ? ", " : "", field->name);
         n = CORE_MIN(n, sizeof known - 1);
     }
-    if (near.best) {
-        fail_at(path, "unknown field \"%.40s\"; did you mean \"%s\"?", wrong, near.best);
+    const char *near = core_nearest(wrong, names.name, names.count);
+    if (near) {
+        fail_at(path, "unknown field \"%.40s\"; did you mean \"%s\"?", wrong, near);
     }
     fail_at(path, "unknown field \"%.40s\"; fields are: %s", wrong, known);
 }
@@ -552,6 +520,14 @@ static void check_args(bind_path *path, const bind_fn *fn, int first, unsigned c
     }
 }
 
+void bind_check_table(script *s, lua_State *L, int index, const char *owner, const char *what,
+                      const bind_arg *fields, void *out) {
+    bind_path path = {.L = L, .s = s, .owner = owner, .argument = 1, .argument_name = what};
+    bind_arg options = {.name = what, .kind = BIND_OPTIONS, .fields = fields};
+    luaL_checkstack(L, 40, "too many options");
+    check_options(&path, &options, index, out);
+}
+
 // Upvalues: the declaration, the script, the owner's name, and the Lua half when it has one.
 static int call_function(lua_State *L) {
     const bind_fn *fn = lua_touserdata(L, lua_upvalueindex(1));
@@ -606,29 +582,25 @@ static int call_method(lua_State *L) {
 
 // ---- names that do not exist ----
 
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
 static int unknown_name(lua_State *L) {
     const char *owner = lua_tostring(L, lua_upvalueindex(1));
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
-    bind_near near = {.name = name};
+    bind_names names = {.count = 0};
     lua_pushnil(L);
-    const char *best = NULL;
-    int distance = 0;
-    while (lua_next(L, lua_upvalueindex(2))) { // names of the table or the class
+    while (lua_next(L, lua_upvalueindex(2))) { // names of the module or the class
         lua_pop(L, 1);
-        if (lua_type(L, -1) == LUA_TSTRING && lua_tostring(L, -1)[0] != '_') {
-            const char *candidate = lua_tostring(L, -1);
-            near.best = NULL;
-            bind_near_try(&near, candidate);
-            bool better = near.best && (!best || near.distance < distance ||
-                                        (near.distance == distance && strcmp(candidate, best) < 0));
-            if (better) {
-                best = candidate;
-                distance = near.distance;
-            }
+        if (lua_type(L, -1) == LUA_TSTRING) {
+            bind_names_add(&names, lua_tostring(L, -1));
         }
     }
-    if (best) {
-        bind_error(L, "%s has no \"%.40s\"; did you mean \"%s\"?", owner, name, best);
+    qsort(names.name, names.count, sizeof names.name[0], compare_names); // ties: first by name
+    const char *near = core_nearest(name, names.name, names.count);
+    if (near) {
+        bind_error(L, "%s has no \"%.40s\"; did you mean \"%s\"?", owner, name, near);
     }
     bind_error(L, "%s has no \"%.40s\"", owner, name);
 }
@@ -645,7 +617,6 @@ static const char *const callbacks[] = {"load", "fixed", "update", "draw",
 
 static int assign_callback(lua_State *L) {
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
-    bind_near near = {.name = name};
     for (size_t i = 0; i < CORE_COUNT_OF(callbacks); i++) {
         if (strcmp(callbacks[i], name) == 0) {
             if (!lua_isfunction(L, 3) && !lua_isnil(L, 3)) {
@@ -654,10 +625,10 @@ static int assign_callback(lua_State *L) {
             lua_rawset(L, 1);
             return 0;
         }
-        bind_near_try(&near, callbacks[i]);
     }
-    if (near.best) {
-        bind_error(L, "corsac has no callback \"%.40s\"; did you mean \"%s\"?", name, near.best);
+    const char *near = core_nearest(name, callbacks, CORE_COUNT_OF(callbacks));
+    if (near) {
+        bind_error(L, "corsac has no callback \"%.40s\"; did you mean \"%s\"?", name, near);
     }
     bind_error(L, "corsac has no callback \"%.40s\"; callbacks are load, fixed, update, draw, event, "
                   "quit, conf, reload", name);
@@ -678,6 +649,13 @@ void bind_push_vec3(lua_State *L, core_vec3 v) {
     lua_pushnumber(L, (double)v.x);
     lua_pushnumber(L, (double)v.y);
     lua_pushnumber(L, (double)v.z);
+}
+
+void bind_push_quat(lua_State *L, core_quat q) {
+    lua_pushnumber(L, (double)q.x);
+    lua_pushnumber(L, (double)q.y);
+    lua_pushnumber(L, (double)q.z);
+    lua_pushnumber(L, (double)q.w);
 }
 
 static script_type_slot *slot_of(script *s, const bind_type *type) {

@@ -154,22 +154,26 @@ void bind_install(script *s, lua_State *L, bool mod);
 // The object of a live handle: always the same userdata. A null handle pushes nil.
 void bind_push(script *s, lua_State *L, const bind_type *type, core_handle h);
 void bind_push_vec3(lua_State *L, core_vec3 v); // three numbers
+void bind_push_quat(lua_State *L, core_quat q); // four numbers
 // Handle of the object at a stack index, null when it is not one of that type.
 core_handle bind_object_handle(script *s, lua_State *L, int index, const bind_type *type);
 
 // Raise a Lua error at the place of the calling script. They do not return.
 CORE_NORETURN void bind_error(lua_State *L, const char *fmt, ...) CORE_PRINTF(2, 3);
 CORE_NORETURN void bind_fail(lua_State *L); // with core_last_error()
+// Checks the table at an index against fields, as an argument named `what` of `owner`, and fills
+// out. For tables that do not come as arguments (corsac.conf).
+void bind_check_table(script *s, lua_State *L, int index, const char *owner, const char *what,
+                      const bind_arg *fields, void *out);
 // Pushes "file:line: " of the innermost frame that is not part of scripts/corsac.
 void bind_push_where(lua_State *L);
 
-// Spelling help: the candidate within a small edit distance of `name`, NULL when none is near.
-typedef struct bind_near {
-    const char *name;
-    const char *best;
-    int distance;
-} bind_near;
-void bind_near_try(bind_near *near, const char *candidate);
+// A list of candidates for core_nearest.
+typedef struct bind_names {
+    const char *name[256];
+    size_t count;
+} bind_names;
+void bind_names_add(bind_names *names, const char *name);
 
 // Text of one argument's type with unit and range, "a number in m, > 0": errors and docs use it.
 void bind_describe(const bind_arg *arg, char *out, size_t size);

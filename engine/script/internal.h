@@ -22,6 +22,8 @@ typedef struct script_expect {
     char metric[96], where[160];
     script_op op;
     double value;
+    bool missed; // corsac.expect.now fell short: `found` was the value
+    double found;
 } script_expect;
 
 struct script {

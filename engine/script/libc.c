@@ -16,6 +16,9 @@ double __wrap_pow(double x, double y) { return core_pow(x, y); }
 double __wrap_atan2(double y, double x) { return core_atan2(y, x); }
 double __wrap_fmod(double x, double y) { return core_fmod(x, y); }
 
+double __wrap_log(double x);
+double __wrap_log(double x) { return core_ln(x); }
+
 #define WRAP(name)                                                                                 \
     double __wrap_##name(double x);                                                                \
     double __wrap_##name(double x) { return core_##name(x); }
@@ -26,7 +29,6 @@ WRAP(asin)
 WRAP(acos)
 WRAP(atan)
 WRAP(exp)
-WRAP(log)
 WRAP(log2)
 WRAP(log10)
 WRAP(sinh)

@@ -2,6 +2,7 @@
 #include "script/script.h"
 
 #include "core/log.h"
+#include "core/nearest.h"
 #include "script/internal.h"
 
 #include <stdio.h>
@@ -69,16 +70,18 @@ static void push_global_hint(lua_State *L, const char *message) {
         return;
     }
     lua_pushlstring(L, at + 8, (size_t)(end - at - 8));
-    bind_near near = {.name = lua_tostring(L, -1)};
+    const char *wrong = lua_tostring(L, -1);
+    bind_names names = {.count = 0};
     lua_pushnil(L);
     while (lua_next(L, LUA_GLOBALSINDEX)) {
         lua_pop(L, 1);
         if (lua_type(L, -1) == LUA_TSTRING) {
-            bind_near_try(&near, lua_tostring(L, -1));
+            bind_names_add(&names, lua_tostring(L, -1));
         }
     }
-    if (near.best) {
-        lua_pushfstring(L, "; did you mean '%s'?", near.best);
+    const char *near = core_nearest(wrong, names.name, names.count);
+    if (near) {
+        lua_pushfstring(L, "; did you mean '%s'?", near);
     } else {
         lua_pushliteral(L, "; no such global is defined");
     }
@@ -272,9 +275,9 @@ int script_check_expectations(script *s) {
     int failed = 0;
     for (int i = 0; i < s->expect_count; i++) {
         const script_expect *e = &s->expect[i];
-        bool known = false;
-        double value = s->host.metric ? s->host.metric(s->host.ctx, e->metric, &known) : 0;
-        if (known && script_compare(value, e->op, e->value)) {
+        bool known = e->missed;
+        double value = e->missed ? e->found : s->host.metric ? s->host.metric(s->host.ctx, e->metric, &known) : 0;
+        if (known && !e->missed && script_compare(value, e->op, e->value)) {
             continue;
         }
         failed++;

@@ -184,6 +184,10 @@ lua_State *script_state_create(script *s) {
         lua_pushnil(L);
         lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
         good = run_part(s, L, "boot");
+        lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
+        lua_getfield(L, -1, "errorScreen");
+        s->error_screen_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+        lua_pop(L, 1);
     }
     if (!good) {
         lua_close(L);

@@ -1,0 +1,481 @@
+// corsac.phys: bodies.
+#include "script/bind_body.h"
+#include "script/internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// ---- options ----
+
+#define BODY_TYPES  "dynamic|static|kinematic"
+#define SHAPE_TYPES "sphere|box|plane|capsule|cylinder|hull"
+static const char *const shape_names[] = {"sphere",  "box",      "plane",
+                                          "capsule", "cylinder", "hull"};
+
+#define SHAPE_FIELDS                                                                               \
+    {"shape",                                                                                      \
+     BIND_ENUM,                                                                                    \
+     BIND_AT(bind_shape_options, shape),                                                           \
+     "geometry",                                                                                   \
+     .optional = true,                                                                             \
+     .def = PHYS_SPHERE,                                                                           \
+     .values = SHAPE_TYPES,                                                                        \
+     BIND_GIVEN(bind_shape_options, has_shape)},                                                   \
+        {"size",                                                                                   \
+         BIND_VEC3,                                                                                \
+         BIND_AT(bind_shape_options, size),                                                        \
+         "box: lengths of its edges",                                                              \
+         "m",                                                                                      \
+         BIND_POSITIVE,                                                                            \
+         .optional = true,                                                                         \
+         .def_vec = {1, 1, 1},                                                                     \
+         .uniform = true,                                                                          \
+         BIND_GIVEN(bind_shape_options, has_size)},                                                \
+        {"radius",                                                                                 \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_shape_options, radius),                                                      \
+         "sphere, capsule, cylinder",                                                              \
+         "m",                                                                                      \
+         BIND_POSITIVE,                                                                            \
+         .optional = true,                                                                         \
+         .def = 0.5,                                                                               \
+         BIND_GIVEN(bind_shape_options, has_radius)},                                              \
+        {"height",                                                                                 \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_shape_options, height),                                                      \
+         "cylinder: whole; capsule: its straight part",                                            \
+         "m",                                                                                      \
+         BIND_POSITIVE,                                                                            \
+         .optional = true,                                                                         \
+         .def = 1,                                                                                 \
+         BIND_GIVEN(bind_shape_options, has_height)},                                              \
+        {"normal",                                                                                 \
+         BIND_VEC3,                                                                                \
+         BIND_AT(bind_shape_options, normal),                                                      \
+         "plane: direction of its free side",                                                      \
+         .optional = true,                                                                         \
+         .def_vec = {0, 1, 0},                                                                     \
+         BIND_GIVEN(bind_shape_options, has_normal)},                                              \
+        {"points",                                                                                 \
+         BIND_NUMBERS,                                                                             \
+         BIND_AT(bind_shape_options, points),                                                      \
+         "hull: its corners, x y z after x y z",                                                   \
+         "m",                                                                                      \
+         .optional = true,                                                                         \
+         BIND_GIVEN(bind_shape_options, has_points)},                                              \
+        {"density",                                                                                \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_shape_options, density),                                                     \
+         "mass per volume",                                                                        \
+         "kg/m^3",                                                                                 \
+         BIND_POSITIVE,                                                                            \
+         .optional = true,                                                                         \
+         .def = 1000},                                                                             \
+        {"friction",                                                                               \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_shape_options, friction),                                                    \
+         "Coulomb's coefficient",                                                                  \
+         NULL,                                                                                     \
+         BIND_NOT_NEGATIVE,                                                                        \
+         .optional = true,                                                                         \
+         .def = 0.5},                                                                              \
+    {                                                                                              \
+        "restitution", BIND_FLOAT, BIND_AT(bind_shape_options, restitution),                       \
+            "share of the speed kept in a bounce", NULL, BIND_BETWEEN, .max = 1, .optional = true  \
+    }
+
+static const bind_arg shape_fields[] = {
+    SHAPE_FIELDS,
+    {"position", BIND_VEC3, BIND_AT(bind_shape_options, position), "in the body's frame", "m",
+     .optional = true},
+    {"rotation", BIND_QUAT, BIND_AT(bind_shape_options, rotation), "in the body's frame",
+     .optional = true, .def_text = "none"},
+    {0}};
+
+// bind_body_options begins with its single shape, so both share these offsets.
+#define BODY_FIELDS                                                                                \
+    SHAPE_FIELDS,                                                                                  \
+        {"shapes",                                                                                 \
+         BIND_LIST,                                                                                \
+         BIND_AT(bind_body_options, shapes),                                                       \
+         "several shapes in place of one",                                                         \
+         .optional = true,                                                                         \
+         .fields = shape_fields,                                                                   \
+         .size = sizeof(bind_shape_options)},                                                      \
+        {"type",                                                                                   \
+         BIND_ENUM,                                                                                \
+         BIND_AT(bind_body_options, type),                                                         \
+         "how it moves",                                                                           \
+         .optional = true,                                                                         \
+         .def = PHYS_DYNAMIC,                                                                      \
+         .values = BODY_TYPES},                                                                    \
+        {"velocity",                                                                               \
+         BIND_VEC3,                                                                                \
+         BIND_AT(bind_body_options, velocity),                                                     \
+         "at the start",                                                                           \
+         "m/s",                                                                                    \
+         .optional = true},                                                                        \
+        {"angularVelocity",                                                                        \
+         BIND_VEC3,                                                                                \
+         BIND_AT(bind_body_options, angular_velocity),                                             \
+         "at the start",                                                                           \
+         "rad/s",                                                                                  \
+         .optional = true},                                                                        \
+        {"linearDamping",                                                                          \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_body_options, linear_damping),                                               \
+         "loss of velocity",                                                                       \
+         "1/s",                                                                                    \
+         BIND_NOT_NEGATIVE,                                                                        \
+         .optional = true},                                                                        \
+        {"angularDamping",                                                                         \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_body_options, angular_damping),                                              \
+         "loss of angular velocity",                                                               \
+         "1/s",                                                                                    \
+         BIND_NOT_NEGATIVE,                                                                        \
+         .optional = true},                                                                        \
+        {"gravityScale",                                                                           \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_body_options, gravity_scale),                                                \
+         "factor on gravity",                                                                      \
+         .optional = true,                                                                         \
+         .def = 1},                                                                                \
+    {                                                                                              \
+        "layer", BIND_INT, BIND_AT(bind_body_options, layer), "collision layer", NULL,             \
+            BIND_BETWEEN, .max = 31, .optional = true                                              \
+    }
+
+const bind_arg bind_body_fields[] = {BODY_FIELDS, {0}};
+
+// Which size fields a shape takes; others are an error that says so.
+static void check_fit(lua_State *L, const char *owner, const bind_shape_options *o) {
+    const char *shape = shape_names[o->shape], *wrong = NULL;
+    bool round = o->shape == PHYS_SPHERE || o->shape == PHYS_CAPSULE || o->shape == PHYS_CYLINDER;
+    wrong = o->has_size && o->shape != PHYS_BOX ? "size" : wrong;
+    wrong = o->has_radius && !round ? "radius" : wrong;
+    wrong = o->has_height && (!round || o->shape == PHYS_SPHERE) ? "height" : wrong;
+    wrong = o->has_normal && o->shape != PHYS_PLANE ? "normal" : wrong;
+    wrong = o->has_points && o->shape != PHYS_HULL ? "points" : wrong;
+    if (!o->has_shape) {
+        bind_error(L, "%s: the body has no shape; expected shape = \"sphere\", \"box\", \"plane\", "
+                      "\"capsule\", \"cylinder\" or \"hull\"", owner);
+    }
+    if (wrong) {
+        static const char *const takes[] = {"radius", "size", "normal", "radius and height",
+                                            "radius and height", "points"};
+        bind_error(L, "%s: a %s has no \"%s\"; it takes %s", owner, shape, wrong, takes[o->shape]);
+    }
+    if (o->shape == PHYS_HULL && (o->points.count < 12 || o->points.count % 3 != 0)) {
+        bind_error(L, "%s: a hull needs at least four corners, three numbers each; points has %u "
+                      "numbers", owner, (unsigned)o->points.count);
+    }
+}
+
+static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_shape_options *o) {
+    check_fit(L, owner, o);
+    phys_shape_desc d = phys_shape_desc_default((phys_shape_type)o->shape);
+    d.half = core_v3_scale(o->size, 0.5f);
+    d.radius = o->radius;
+    d.half_height = 0.5f * o->height;
+    d.normal = core_v3_normalize(o->normal, core_v3(0, 1, 0));
+    d.points = o->points.items;
+    d.point_count = o->points.count / 3;
+    d.position = o->position;
+    d.rotation = o->rotation;
+    d.density = o->density;
+    d.friction = o->friction;
+    d.restitution = o->restitution;
+    return d;
+}
+
+uint32_t bind_body_read(lua_State *L, const char *owner, const bind_body_options *o,
+                        phys_body_desc *out, phys_shape_desc *shapes) {
+    out->type = (phys_body_type)o->type;
+    out->velocity = o->velocity;
+    out->angular_velocity = o->angular_velocity;
+    out->linear_damping = o->linear_damping;
+    out->angular_damping = o->angular_damping;
+    out->gravity_scale = o->gravity_scale;
+    out->layer = (uint32_t)o->layer;
+    if (o->shapes.count == 0) {
+        shapes[0] = read_shape(L, owner, &o->shape);
+        return 1;
+    }
+    if (o->shape.has_shape || o->shapes.count > BIND_SHAPES_MAX) {
+        bind_error(L, "%s: give either shape or shapes (at most %d)", owner, BIND_SHAPES_MAX);
+    }
+    const bind_shape_options *list = o->shapes.items;
+    for (uint32_t i = 0; i < o->shapes.count; i++) {
+        shapes[i] = read_shape(L, owner, &list[i]);
+    }
+    return o->shapes.count;
+}
+
+core_vec3 bind_body_mesh_scale(const bind_body_options *options) {
+    const bind_shape_options *o =
+        options->shapes.count ? options->shapes.items : &options->shape;
+    float d = 2 * o->radius;
+    switch (o->shape) {
+    case PHYS_SPHERE: return core_v3(d, d, d);
+    case PHYS_BOX: return o->size;
+    case PHYS_CAPSULE:
+    case PHYS_CYLINDER: return core_v3(d, o->height, d);
+    case PHYS_PLANE: return core_v3(200, 1, 200);
+    default: return core_v3(1, 1, 1);
+    }
+}
+
+// ---- bodies ----
+
+static bool body_alive(script *s, core_handle h) {
+    phys_world *world = scene_phys_if(s->scene);
+    return world && phys_body_alive(world, h);
+}
+
+typedef struct vector_args {
+    core_handle self;
+    double x, y, z;
+} vector_args;
+typedef struct quat_args {
+    core_handle self;
+    double x, y, z, w;
+} quat_args;
+typedef struct impulse_args {
+    core_handle self;
+    double x, y, z;
+    double px, py, pz;
+    bool has_point;
+} impulse_args;
+
+static core_vec3 vector_of(const vector_args *a) {
+    return core_v3((float)a->x, (float)a->y, (float)a->z);
+}
+static int done(lua_State *L, bool good) {
+    if (!good) {
+        bind_fail(L);
+    }
+    return 0;
+}
+
+#define BODY_GETTER(name, read)                                                                    \
+    static int name(script *s, lua_State *L, void *args) {                                         \
+        core_vec3 v = {0, 0, 0};                                                                   \
+        done(L, read(scene_phys(s->scene), *(core_handle *)args, &v));                             \
+        bind_push_vec3(L, v);                                                                      \
+        return 3;                                                                                  \
+    }
+#define BODY_SETTER(name, write)                                                                   \
+    static int name(script *s, lua_State *L, void *args) {                                         \
+        const vector_args *a = args;                                                               \
+        return done(L, write(scene_phys(s->scene), a->self, vector_of(a)));                        \
+    }
+BODY_GETTER(get_velocity, phys_body_velocity)
+BODY_GETTER(get_angular_velocity, phys_body_angular_velocity)
+BODY_GETTER(get_position, phys_body_position)
+BODY_SETTER(set_velocity, phys_body_set_velocity)
+BODY_SETTER(set_angular_velocity, phys_body_set_angular_velocity)
+BODY_SETTER(apply_force, phys_body_apply_force)
+
+// A body that belongs to an entity is moved through it, so that interpolation starts anew.
+static int set_position(script *s, lua_State *L, void *args) {
+    const vector_args *a = args;
+    scene_entity e = scene_entity_of_body(s->scene, a->self);
+    return done(L, core_handle_is_null(e)
+                       ? phys_body_set_position(scene_phys(s->scene), a->self, vector_of(a))
+                       : scene_set_position(s->scene, e, vector_of(a)));
+}
+
+static int get_rotation(script *s, lua_State *L, void *args) {
+    core_quat q = core_quat_identity();
+    done(L, phys_body_rotation(scene_phys(s->scene), *(core_handle *)args, &q));
+    bind_push_quat(L, q);
+    return 4;
+}
+
+static int set_rotation(script *s, lua_State *L, void *args) {
+    const quat_args *a = args;
+    core_quat q =
+        core_quat_normalize((core_quat){(float)a->x, (float)a->y, (float)a->z, (float)a->w});
+    scene_entity e = scene_entity_of_body(s->scene, a->self);
+    return done(L, core_handle_is_null(e)
+                       ? phys_body_set_rotation(scene_phys(s->scene), a->self, q)
+                       : scene_set_rotation(s->scene, e, q));
+}
+
+static int apply_impulse(script *s, lua_State *L, void *args) {
+    const impulse_args *a = args;
+    phys_world *world = scene_phys(s->scene);
+    core_vec3 at;
+    if (a->has_point) {
+        at = core_v3((float)a->px, (float)a->py, (float)a->pz);
+    } else {
+        done(L, phys_body_position(world, a->self, &at));
+    }
+    core_vec3 impulse = core_v3((float)a->x, (float)a->y, (float)a->z);
+    return done(L, phys_body_apply_impulse(world, a->self, impulse, at));
+}
+
+static int get_mass(script *s, lua_State *L, void *args) {
+    lua_pushnumber(L, (double)phys_body_mass(scene_phys(s->scene), *(core_handle *)args));
+    return 1;
+}
+
+static int get_entity(script *s, lua_State *L, void *args) {
+    bind_push(s, L, &bind_entity_type, scene_entity_of_body(s->scene, *(core_handle *)args));
+    return 1;
+}
+
+static int destroy(script *s, lua_State *L, void *args) {
+    core_handle body = *(core_handle *)args;
+    if (!core_handle_is_null(scene_entity_of_body(s->scene, body))) {
+        bind_error(L, "Body:destroy: this body belongs to an entity; destroy the entity");
+    }
+    return done(L, phys_body_destroy(scene_phys(s->scene), body));
+}
+
+static int is_destroyed(script *s, lua_State *L, void *args) {
+    (void)s;
+    (void)args;
+    lua_pushboolean(L, 0); // the caller answers for dead ones
+    return 1;
+}
+
+#define XYZ_ARGS(unit_text)                                                                        \
+    BIND_ARGS({"x", BIND_NUMBER, BIND_AT(vector_args, x), "", unit_text},                          \
+              {"y", BIND_NUMBER, BIND_AT(vector_args, y), "", unit_text},                          \
+              {"z", BIND_NUMBER, BIND_AT(vector_args, z), "", unit_text})
+#define XYZ(unit_text)                                                                             \
+    BIND_RETURNS({"x", "number", unit_text}, {"y", "number", unit_text}, {"z", "number", unit_text})
+#define GETTER(fn_name, text, unit_text, handler)                                                  \
+    {                                                                                              \
+        fn_name, text, NULL, XYZ(unit_text), sizeof(core_handle), BIND_RUNNING, .mod = true,       \
+            .cost = 4, .run = handler                                                              \
+    }
+#define SETTER(fn_name, text, unit_text, handler)                                                  \
+    {                                                                                              \
+        fn_name, text, XYZ_ARGS(unit_text), NULL, sizeof(vector_args), BIND_SIM, .mod = true,      \
+            .cost = 8, .run = handler                                                              \
+    }
+
+static const bind_fn body_methods[] = {
+    GETTER("getPosition", "Where its origin is.", "m", get_position),
+    SETTER("setPosition", "Teleports it.", "m", set_position),
+    {"getRotation", "Its rotation as a quaternion.", NULL,
+     BIND_RETURNS({"x", "number", NULL}, {"y", "number", NULL}, {"z", "number", NULL},
+                  {"w", "number", NULL}),
+     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_rotation},
+    {"setRotation", "Turns it; the quaternion is normalised.",
+     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(quat_args, x), ""},
+               {"y", BIND_NUMBER, BIND_AT(quat_args, y), ""},
+               {"z", BIND_NUMBER, BIND_AT(quat_args, z), ""},
+               {"w", BIND_NUMBER, BIND_AT(quat_args, w), ""}),
+     NULL, sizeof(quat_args), BIND_SIM, .mod = true, .cost = 8, .run = set_rotation},
+    GETTER("getVelocity", "Velocity of its centre of mass.", "m/s", get_velocity),
+    SETTER("setVelocity", "Sets the velocity of its centre of mass.", "m/s", set_velocity),
+    GETTER("getAngularVelocity", "Angular velocity in the world's frame.", "rad/s",
+           get_angular_velocity),
+    SETTER("setAngularVelocity", "Sets the angular velocity.", "rad/s", set_angular_velocity),
+    SETTER("applyForce", "Pushes at its centre of mass during the next step.", "N", apply_force),
+    {"applyImpulse", "Changes its momentum at once.",
+     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(impulse_args, x), "", "N s"},
+               {"y", BIND_NUMBER, BIND_AT(impulse_args, y), "", "N s"},
+               {"z", BIND_NUMBER, BIND_AT(impulse_args, z), "", "N s"},
+               {"px", BIND_NUMBER, BIND_AT(impulse_args, px), "where, in the world", "m",
+                .optional = true, .def_text = "its origin", BIND_GIVEN(impulse_args, has_point)},
+               {"py", BIND_NUMBER, BIND_AT(impulse_args, py), "", "m", .optional = true},
+               {"pz", BIND_NUMBER, BIND_AT(impulse_args, pz), "", "m", .optional = true}),
+     NULL, sizeof(impulse_args), BIND_SIM, .mod = true, .cost = 8, .run = apply_impulse},
+    {"getMass", "Its mass; 0 for static bodies.", NULL, BIND_RETURNS({"mass", "number", "kg"}),
+     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_mass},
+    {"getEntity", "The entity it belongs to, or nil.", NULL,
+     BIND_RETURNS({"entity", "corsac.Entity?", NULL}), sizeof(core_handle), BIND_RUNNING,
+     .mod = true, .cost = 4, .run = get_entity},
+    {"isDestroyed", "Whether it was destroyed; every other method then raises an error.", NULL,
+     BIND_RETURNS({"destroyed", "boolean", NULL}), sizeof(core_handle), BIND_ANY, .mod = true,
+     .cost = 2, .run = is_destroyed},
+    {"destroy", "Removes it from the world.", NULL, NULL, sizeof(core_handle), BIND_SIM,
+     .mod = true, .cost = 50, .run = destroy},
+    {0}};
+
+const bind_type bind_body_type = {"Body", "A rigid body.", body_alive, body_methods};
+
+// ---- corsac.phys ----
+
+typedef struct gravity_args {
+    double x, y, z;
+} gravity_args;
+static int set_gravity(script *s, lua_State *L, void *args) {
+    const gravity_args *a = args;
+    (void)L;
+    phys_world_set_gravity(scene_phys(s->scene),
+                           core_v3((float)a->x, (float)a->y, (float)a->z));
+    return 0;
+}
+static int get_gravity(script *s, lua_State *L, void *args) {
+    (void)args;
+    bind_push_vec3(L, phys_world_gravity(scene_phys(s->scene)));
+    return 3;
+}
+
+typedef struct new_body_args {
+    bind_body_options body;
+    core_vec3 position;
+    core_quat rotation;
+} new_body_args;
+typedef struct new_body_call {
+    new_body_args options;
+} new_body_call;
+
+static int new_body(script *s, lua_State *L, void *args) {
+    const new_body_args *a = &((new_body_call *)args)->options;
+    phys_body_desc desc = phys_body_desc_default();
+    phys_shape_desc shapes[BIND_SHAPES_MAX];
+    uint32_t count = bind_body_read(L, "corsac.phys.newBody", &a->body, &desc, shapes);
+    desc.position = a->position;
+    desc.rotation = a->rotation;
+    phys_body body = phys_body_create(scene_phys(s->scene), &desc, shapes, count);
+    if (core_handle_is_null(body)) {
+        bind_fail(L);
+    }
+    bind_push(s, L, &bind_body_type, body);
+    return 1;
+}
+
+static int get_body_count(script *s, lua_State *L, void *args) {
+    (void)args;
+    phys_world *world = scene_phys_if(s->scene);
+    lua_pushnumber(L, world ? (double)phys_body_count(world) : 0);
+    return 1;
+}
+
+static const bind_arg new_body_fields[] = {
+    BODY_FIELDS,
+    {"position", BIND_VEC3, BIND_AT(new_body_args, position), "origin", "m", .optional = true},
+    {"rotation", BIND_QUAT, BIND_AT(new_body_args, rotation), "", .optional = true,
+     .def_text = "none"},
+    {0}};
+
+static const bind_fn functions[] = {
+    {"setGravity", "Sets the acceleration of every body.",
+     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(gravity_args, x), "", "m/s^2"},
+               {"y", BIND_NUMBER, BIND_AT(gravity_args, y), "", "m/s^2"},
+               {"z", BIND_NUMBER, BIND_AT(gravity_args, z), "", "m/s^2"}),
+     NULL, sizeof(gravity_args), BIND_SIM, .mod = true, .cost = 10, .run = set_gravity},
+    {"getGravity", "The acceleration of every body.", NULL, XYZ("m/s^2"), 0, BIND_RUNNING,
+     .mod = true, .cost = 4, .run = get_gravity},
+    {"newBody", "Makes a body without an entity: it is drawn as a debug shape only.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(new_body_call, options), "the body",
+                .fields = new_body_fields}),
+     BIND_RETURNS({"body", "corsac.Body", NULL}), sizeof(new_body_call), BIND_SIM, .mod = true,
+     .cost = 2000, .run = new_body},
+    {"getBodyCount", "How many bodies the world has.", NULL,
+     BIND_RETURNS({"count", "integer", NULL}), 0, BIND_RUNNING, .mod = true, .cost = 4,
+     .run = get_body_count},
+    {0}};
+
+static const bind_module modules[] = {
+    {"corsac.phys", "Rigid bodies: metres, kilograms, seconds, radians.", functions}, {0}};
+static const bind_type *const types[] = {&bind_body_type, NULL};
+
+const bind_room bind_phys_room = {"phys", modules, types};
