@@ -61,11 +61,10 @@ void bind_names_add(bind_names *names, const char *name) {
 static const struct {
     unsigned phase;
     const char *name;
-} phase_names[] = {{BIND_TOP, "the file's own code"}, {BIND_CONF, "corsac.conf"},
-                   {BIND_LOAD, "corsac.load"},        {BIND_FIXED, "corsac.fixed"},
-                   {BIND_STEP, "the step"},           {BIND_UPDATE, "corsac.update"},
-                   {BIND_DRAW, "corsac.draw"},        {BIND_EVENT, "corsac.event"},
-                   {BIND_QUIT, "corsac.quit"}};
+} phase_names[] = {
+    {BIND_TOP, "the file's own code"}, {BIND_CONF, "corsac.conf"},   {BIND_LOAD, "corsac.load"},
+    {BIND_FIXED, "corsac.fixed"},      {BIND_STEP, "the step"},      {BIND_UPDATE, "corsac.update"},
+    {BIND_DRAW, "corsac.draw"},        {BIND_EVENT, "corsac.event"}, {BIND_QUIT, "corsac.quit"}};
 
 const char *bind_phase_name(unsigned phase) {
     for (size_t i = 0; i < CORE_COUNT_OF(phase_names); i++) {
@@ -79,22 +78,38 @@ const char *bind_phase_name(unsigned phase) {
 static const char *kind_name(const bind_arg *arg) {
     switch (arg->kind) {
     case BIND_NUMBER:
-    case BIND_FLOAT: return "a number";
-    case BIND_INT: return "a whole number";
-    case BIND_BOOL: return "true or false";
-    case BIND_STRING: return "a string";
-    case BIND_ENUM: return "one of";
-    case BIND_VEC3: return arg->uniform ? "a number or a table {x, y, z}" : "a table {x, y, z}";
-    case BIND_QUAT: return "a table {x, y, z, w} or {axis = {x, y, z}, angle = radians}";
-    case BIND_COLOR: return "a table {r, g, b} or {r, g, b, a}";
-    case BIND_OBJECT: return "an object";
-    case BIND_OPTIONS: return "a table of options";
-    case BIND_LIST: return "an array of tables";
-    case BIND_NUMBERS: return "an array of numbers";
-    case BIND_FUNCTION: return "a function";
-    case BIND_TABLE: return "a table";
-    case BIND_VALUE: return "a value";
-    case BIND_REST: return "any values";
+    case BIND_FLOAT:
+        return "a number";
+    case BIND_INT:
+        return "a whole number";
+    case BIND_BOOL:
+        return "true or false";
+    case BIND_STRING:
+        return "a string";
+    case BIND_ENUM:
+        return "one of";
+    case BIND_VEC3:
+        return arg->uniform ? "a number or a table {x, y, z}" : "a table {x, y, z}";
+    case BIND_QUAT:
+        return "a table {x, y, z, w} or {axis = {x, y, z}, angle = radians}";
+    case BIND_COLOR:
+        return "a table {r, g, b} or {r, g, b, a}";
+    case BIND_OBJECT:
+        return "an object";
+    case BIND_OPTIONS:
+        return "a table of options";
+    case BIND_LIST:
+        return "an array of tables";
+    case BIND_NUMBERS:
+        return "an array of numbers";
+    case BIND_FUNCTION:
+        return "a function";
+    case BIND_TABLE:
+        return "a table";
+    case BIND_VALUE:
+        return "a value";
+    case BIND_REST:
+        return "any values";
     }
     return "";
 }
@@ -145,9 +160,15 @@ static const bind_type *type_at(script *s, lua_State *L, int index) {
 static void describe_value(script *s, lua_State *L, int index, char *out, size_t size) {
     switch (lua_type(L, index)) {
     case LUA_TNONE:
-    case LUA_TNIL: snprintf(out, size, "nothing (nil)"); break;
-    case LUA_TBOOLEAN: snprintf(out, size, "%s", lua_toboolean(L, index) ? "true" : "false"); break;
-    case LUA_TNUMBER: snprintf(out, size, "the number %.14g", lua_tonumber(L, index)); break;
+    case LUA_TNIL:
+        snprintf(out, size, "nothing (nil)");
+        break;
+    case LUA_TBOOLEAN:
+        snprintf(out, size, "%s", lua_toboolean(L, index) ? "true" : "false");
+        break;
+    case LUA_TNUMBER:
+        snprintf(out, size, "the number %.14g", lua_tonumber(L, index));
+        break;
     case LUA_TSTRING: {
         const char *text = lua_tostring(L, index);
         snprintf(out, size, "the string \"%.40s%s\"", text, strlen(text) > 40 ? "..." : "");
@@ -158,7 +179,9 @@ static void describe_value(script *s, lua_State *L, int index, char *out, size_t
         snprintf(out, size, "a %s", type ? type->name : "userdata");
         break;
     }
-    default: snprintf(out, size, "a %s", luaL_typename(L, index)); break;
+    default:
+        snprintf(out, size, "a %s", luaL_typename(L, index));
+        break;
     }
 }
 
@@ -276,7 +299,8 @@ static void check_quat(bind_path *path, const bind_arg *arg, int index, core_qua
     bool good = lua_type(L, -2) == LUA_TTABLE && lua_type(L, -1) == LUA_TNUMBER &&
                 read_numbers(L, lua_gettop(L) - 1, v, 3) && isfinite(lua_tonumber(L, -1));
     if (!good) {
-        fail_at(path, "expected four finite numbers {x, y, z, w} or {axis = {x, y, z}, angle = radians}");
+        fail_at(path,
+                "expected four finite numbers {x, y, z, w} or {axis = {x, y, z}, angle = radians}");
     }
     core_vec3 axis = core_v3_normalize((core_vec3){v[0], v[1], v[2]}, (core_vec3){0, 0, 0});
     if (core_v3_dot(axis, axis) == 0) {
@@ -407,18 +431,33 @@ static void check_numbers(bind_path *path, const bind_arg *arg, int index, bind_
 
 static void set_default(const bind_arg *arg, unsigned char *member) {
     switch (arg->kind) {
-    case BIND_NUMBER: *(double *)(void *)member = arg->def; break;
-    case BIND_FLOAT: *(float *)(void *)member = (float)arg->def; break;
-    case BIND_INT: *(int64_t *)(void *)member = (int64_t)arg->def; break;
-    case BIND_BOOL: *(bool *)member = arg->def != 0; break;
-    case BIND_ENUM: *(int *)(void *)member = (int)arg->def; break;
-    case BIND_STRING: *(const char **)(void *)member = arg->def_text; break;
-    case BIND_VEC3: *(core_vec3 *)(void *)member = arg->def_vec; break;
+    case BIND_NUMBER:
+        *(double *)(void *)member = arg->def;
+        break;
+    case BIND_FLOAT:
+        *(float *)(void *)member = (float)arg->def;
+        break;
+    case BIND_INT:
+        *(int64_t *)(void *)member = (int64_t)arg->def;
+        break;
+    case BIND_BOOL:
+        *(bool *)member = arg->def != 0;
+        break;
+    case BIND_ENUM:
+        *(int *)(void *)member = (int)arg->def;
+        break;
+    case BIND_STRING:
+        *(const char **)(void *)member = arg->def_text;
+        break;
+    case BIND_VEC3:
+        *(core_vec3 *)(void *)member = arg->def_vec;
+        break;
     case BIND_COLOR:
         memcpy(member, &arg->def_vec, sizeof arg->def_vec);
         ((float *)(void *)member)[3] = 1;
         break;
-    default: break; // already zero
+    default:
+        break; // already zero
     }
 }
 
@@ -433,9 +472,15 @@ static void check_value(bind_path *path, const bind_arg *arg, int index, unsigne
         *(bool *)(out + arg->given) = true;
     }
     switch (arg->kind) {
-    case BIND_NUMBER: *(double *)(void *)member = check_number(path, arg, index); break;
-    case BIND_FLOAT: *(float *)(void *)member = (float)check_number(path, arg, index); break;
-    case BIND_INT: *(int64_t *)(void *)member = (int64_t)check_number(path, arg, index); break;
+    case BIND_NUMBER:
+        *(double *)(void *)member = check_number(path, arg, index);
+        break;
+    case BIND_FLOAT:
+        *(float *)(void *)member = (float)check_number(path, arg, index);
+        break;
+    case BIND_INT:
+        *(int64_t *)(void *)member = (int64_t)check_number(path, arg, index);
+        break;
     case BIND_BOOL:
         if (lua_type(L, index) != LUA_TBOOLEAN) {
             expected(path, arg, index);
@@ -448,14 +493,30 @@ static void check_value(bind_path *path, const bind_arg *arg, int index, unsigne
         }
         *(const char **)(void *)member = lua_tostring(L, index);
         break;
-    case BIND_ENUM: *(int *)(void *)member = check_enum(path, arg, index); break;
-    case BIND_VEC3: check_vec3(path, arg, index, (core_vec3 *)(void *)member); break;
-    case BIND_QUAT: check_quat(path, arg, index, (core_quat *)(void *)member); break;
-    case BIND_COLOR: check_color(path, arg, index, (float *)(void *)member); break;
-    case BIND_OBJECT: *(core_handle *)(void *)member = check_object(path, arg, index); break;
-    case BIND_OPTIONS: check_options(path, arg, index, member); break;
-    case BIND_LIST: check_list(path, arg, index, (bind_list *)(void *)member); break;
-    case BIND_NUMBERS: check_numbers(path, arg, index, (bind_numbers *)(void *)member); break;
+    case BIND_ENUM:
+        *(int *)(void *)member = check_enum(path, arg, index);
+        break;
+    case BIND_VEC3:
+        check_vec3(path, arg, index, (core_vec3 *)(void *)member);
+        break;
+    case BIND_QUAT:
+        check_quat(path, arg, index, (core_quat *)(void *)member);
+        break;
+    case BIND_COLOR:
+        check_color(path, arg, index, (float *)(void *)member);
+        break;
+    case BIND_OBJECT:
+        *(core_handle *)(void *)member = check_object(path, arg, index);
+        break;
+    case BIND_OPTIONS:
+        check_options(path, arg, index, member);
+        break;
+    case BIND_LIST:
+        check_list(path, arg, index, (bind_list *)(void *)member);
+        break;
+    case BIND_NUMBERS:
+        check_numbers(path, arg, index, (bind_numbers *)(void *)member);
+        break;
     case BIND_FUNCTION:
     case BIND_TABLE:
         if (lua_type(L, index) != (arg->kind == BIND_TABLE ? LUA_TTABLE : LUA_TFUNCTION)) {
@@ -469,7 +530,9 @@ static void check_value(bind_path *path, const bind_arg *arg, int index, unsigne
         }
         *(int *)(void *)member = index;
         break;
-    case BIND_REST: *(int *)(void *)member = index; break;
+    case BIND_REST:
+        *(int *)(void *)member = index;
+        break;
     }
 }
 
@@ -479,11 +542,14 @@ static void check_phase(script *s, lua_State *L, const bind_fn *fn, const char *
     }
     const char *now = bind_phase_name(s->phase);
     if ((fn->phases & BIND_SIM) && (s->phase & (BIND_VIEW | BIND_QUIT))) {
-        bind_error(L, "%s changes the simulation, which %s must not do; call it from corsac.fixed "
-                      "(or corsac.load)", owner, now);
+        bind_error(L,
+                   "%s changes the simulation, which %s must not do; call it from corsac.fixed "
+                   "(or corsac.load)",
+                   owner, now);
     }
     if ((fn->phases & BIND_SIM) && (s->phase & (BIND_TOP | BIND_CONF))) {
-        bind_error(L, "%s needs the world, which does not exist yet in %s; call it from corsac.load",
+        bind_error(L,
+                   "%s needs the world, which does not exist yet in %s; call it from corsac.load",
                    owner, now);
     }
     char allowed[256];
@@ -608,12 +674,14 @@ static int unknown_name(lua_State *L) {
 static int refuse_assignment(lua_State *L) {
     const char *owner = lua_tostring(L, lua_upvalueindex(1));
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
-    bind_error(L, "%s holds no fields of yours (\"%.40s\"); keep your data in a table of your own, "
-                  "with the object as key", owner, name);
+    bind_error(L,
+               "%s holds no fields of yours (\"%.40s\"); keep your data in a table of your own, "
+               "with the object as key",
+               owner, name);
 }
 
-static const char *const callbacks[] = {"load", "fixed", "update", "draw",
-                                        "event", "quit", "conf",   "reload"};
+static const char *const callbacks[] = {"load",  "fixed", "update", "draw",
+                                        "event", "quit",  "conf",   "reload"};
 
 static int assign_callback(lua_State *L) {
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
@@ -630,8 +698,10 @@ static int assign_callback(lua_State *L) {
     if (near) {
         bind_error(L, "corsac has no callback \"%.40s\"; did you mean \"%s\"?", name, near);
     }
-    bind_error(L, "corsac has no callback \"%.40s\"; callbacks are load, fixed, update, draw, event, "
-                  "quit, conf, reload", name);
+    bind_error(L,
+               "corsac has no callback \"%.40s\"; callbacks are load, fixed, update, draw, event, "
+               "quit, conf, reload",
+               name);
 }
 
 static int callback_or_unknown(lua_State *L) {

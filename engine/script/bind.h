@@ -37,24 +37,24 @@ enum {
     BIND_ANY = BIND_RUNNING | BIND_TOP | BIND_CONF
 };
 
-typedef enum bind_kind {      // what Lua gives            -> member of the args struct
-    BIND_NUMBER = 1,          // finite number             -> double
-    BIND_FLOAT,               // finite number             -> float
-    BIND_INT,                 // whole number              -> int64_t
-    BIND_BOOL,                // true, false               -> bool
-    BIND_STRING,              // string                    -> const char * (lives as long as the call)
-    BIND_ENUM,                // one of `values`           -> int (its place in `values`)
-    BIND_VEC3,                // {x, y, z}                 -> core_vec3
-    BIND_QUAT,                // {x, y, z, w} or {axis = {x, y, z}, angle = r} -> core_quat
-    BIND_COLOR,               // {r, g, b} or {r, g, b, a} -> float[4]
-    BIND_OBJECT,              // object of `type`          -> core_handle
-    BIND_OPTIONS,             // table with `fields`       -> struct with its own members
-    BIND_LIST,                // array of such tables      -> bind_list of structs of `size` bytes
-    BIND_NUMBERS,             // array of numbers          -> bind_numbers
-    BIND_FUNCTION,            // function                  -> int (stack index)
-    BIND_TABLE,               // any table                 -> int (stack index)
-    BIND_VALUE,               // anything but nil          -> int (stack index)
-    BIND_REST                 // all further arguments     -> int (index of the first)
+typedef enum bind_kind { // what Lua gives            -> member of the args struct
+    BIND_NUMBER = 1,     // finite number             -> double
+    BIND_FLOAT,          // finite number             -> float
+    BIND_INT,            // whole number              -> int64_t
+    BIND_BOOL,           // true, false               -> bool
+    BIND_STRING,         // string                    -> const char * (lives as long as the call)
+    BIND_ENUM,           // one of `values`           -> int (its place in `values`)
+    BIND_VEC3,           // {x, y, z}                 -> core_vec3
+    BIND_QUAT,           // {x, y, z, w} or {axis = {x, y, z}, angle = r} -> core_quat
+    BIND_COLOR,          // {r, g, b} or {r, g, b, a} -> float[4]
+    BIND_OBJECT,         // object of `type`          -> core_handle
+    BIND_OPTIONS,        // table with `fields`       -> struct with its own members
+    BIND_LIST,           // array of such tables      -> bind_list of structs of `size` bytes
+    BIND_NUMBERS,        // array of numbers          -> bind_numbers
+    BIND_FUNCTION,       // function                  -> int (stack index)
+    BIND_TABLE,          // any table                 -> int (stack index)
+    BIND_VALUE,          // anything but nil          -> int (stack index)
+    BIND_REST            // all further arguments     -> int (index of the first)
 } bind_kind;
 
 typedef enum bind_range {
@@ -73,15 +73,15 @@ struct bind_arg {
     const char *doc;
     const char *unit; // "m", "kg/m^3"; NULL: none
     bind_range range;
-    double min, max;       // BIND_BETWEEN
-    bool optional;         // may be nil; then the default below (zero, NULL, null handle)
-    double def;            // number, float, int, bool, enum
-    const char *def_text;  // default of a string; for others how the docs describe the default
-    core_vec3 def_vec;     // vec3; first three of a colour
-    bool uniform;          // vec3: one number means {n, n, n}
-    size_t given;          // offset of a bool that says whether it was given; 0: none
-    const char *values;    // enum: "dynamic|static"
-    const bind_type *type; // object
+    double min, max;        // BIND_BETWEEN
+    bool optional;          // may be nil; then the default below (zero, NULL, null handle)
+    double def;             // number, float, int, bool, enum
+    const char *def_text;   // default of a string; for others how the docs describe the default
+    core_vec3 def_vec;      // vec3; first three of a colour
+    bool uniform;           // vec3: one number means {n, n, n}
+    size_t given;           // offset of a bool that says whether it was given; 0: none
+    const char *values;     // enum: "dynamic|static"
+    const bind_type *type;  // object
     const bind_arg *fields; // options, list
     size_t size;            // list: bytes of one struct
 };

@@ -29,7 +29,8 @@ static void declare_param(script *s, lua_State *L, const char *name) {
 static int param(script *s, lua_State *L, void *args) {
     const param_args *a = args;
     if (strchr(a->name, '.')) {
-        bind_error(L, "corsac.param: \"%s\" has a dot, which is how settings are named (corsac.set)",
+        bind_error(L,
+                   "corsac.param: \"%s\" has a dot, which is how settings are named (corsac.set)",
                    a->name);
     }
     declare_param(s, L, a->name);
@@ -55,10 +56,14 @@ static int param(script *s, lua_State *L, void *args) {
         }
         lua_pushboolean(L, text[0] == 't');
         return 1;
-    case LUA_TSTRING: lua_pushstring(L, text); return 1;
+    case LUA_TSTRING:
+        lua_pushstring(L, text);
+        return 1;
     default:
-        bind_error(L, "corsac.param: the default of \"%s\" is a %s; expected a number, true or "
-                      "false, or a string", a->name, luaL_typename(L, a->value));
+        bind_error(L,
+                   "corsac.param: the default of \"%s\" is a %s; expected a number, true or "
+                   "false, or a string",
+                   a->name, luaL_typename(L, a->value));
     }
 }
 
@@ -75,8 +80,10 @@ static int set(script *s, lua_State *L, void *args) {
     } else if (type == LUA_TNUMBER || type == LUA_TSTRING) {
         lua_pushvalue(L, a->value);
     } else {
-        bind_error(L, "corsac.set: the value of \"%s\" is a %s; expected a number, string, true or "
-                      "false", a->name, luaL_typename(L, a->value));
+        bind_error(L,
+                   "corsac.set: the value of \"%s\" is a %s; expected a number, string, true or "
+                   "false",
+                   a->name, luaL_typename(L, a->value));
     }
     if (!scene_setting(s->scene, a->name, lua_tostring(L, -1))) {
         bind_fail(L);
@@ -96,8 +103,10 @@ static double read_metric(script *s, lua_State *L, const char *owner, const char
     bool known = false;
     double value = s->host.metric ? s->host.metric(s->host.ctx, name, &known) : 0;
     if (!known) {
-        bind_error(L, "%s: no metric \"%s\" (names are those of the metrics file, with dots: "
-                      "\"accuracy.nan\", \"user.score\")", owner, name);
+        bind_error(L,
+                   "%s: no metric \"%s\" (names are those of the metrics file, with dots: "
+                   "\"accuracy.nan\", \"user.score\")",
+                   owner, name);
     }
     return value;
 }
@@ -128,8 +137,8 @@ static int expect_now(script *s, lua_State *L, void *args) {
         bool room = s->expect_count < SCRIPT_EXPECT_MAX;
         if (room) {
             script_expect *e = &s->expect[s->expect_count++];
-            *e = (script_expect){.op = (script_op)a->op, .value = a->value, .missed = true,
-                                 .found = value};
+            *e = (script_expect){
+                .op = (script_op)a->op, .value = a->value, .missed = true, .found = value};
             snprintf(e->metric, sizeof e->metric, "%s", a->metric);
             bind_push_where(L);
             snprintf(e->where, sizeof e->where, "%sstep %u: ", lua_tostring(L, -1),
@@ -210,8 +219,10 @@ static int is_down(script *s, lua_State *L, void *args) {
     bool known = false;
     bool down = s->host.input_down ? s->host.input_down(s->host.ctx, name, &known) : false;
     if (!known) {
-        bind_error(L, "corsac.input.isDown: no key, button or action \"%s\"; actions are declared in "
-                      "corsac.conf (t.actions = {jump = \"space\"})", name);
+        bind_error(L,
+                   "corsac.input.isDown: no key, button or action \"%s\"; actions are declared in "
+                   "corsac.conf (t.actions = {jump = \"space\"})",
+                   name);
     }
     lua_pushboolean(L, down);
     return 1;
@@ -312,8 +323,8 @@ static const bind_fn root_functions[] = {
      BIND_ARGS({"name", BIND_STRING, BIND_AT(param_args, name), "without a dot"},
                {"default", BIND_VALUE, BIND_AT(param_args, value),
                 "number, boolean or string; decides the type"}),
-     BIND_RETURNS({"value", "any", NULL}), sizeof(param_args),
-     BIND_TOP | BIND_CONF | BIND_LOAD, .run = param},
+     BIND_RETURNS({"value", "any", NULL}), sizeof(param_args), BIND_TOP | BIND_CONF | BIND_LOAD,
+     .run = param},
     {"set", "Changes a setting of a room, as --set ROOM.NAME=VALUE does.",
      BIND_ARGS({"name", BIND_STRING, BIND_AT(set_args, name), "room, dot, name: \"phys.solver\""},
                {"value", BIND_VALUE, BIND_AT(set_args, value), "number, boolean or string"}),

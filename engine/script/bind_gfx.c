@@ -44,7 +44,8 @@ static core_quat look_rotation(core_vec3 eye, core_vec3 target) {
     core_vec3 up = back.y > 0.9999f || back.y < -0.9999f ? core_v3(0, 0, -1) : core_v3(0, 1, 0);
     core_vec3 right = core_v3_normalize(core_v3_cross(up, back), core_v3(1, 0, 0));
     up = core_v3_cross(back, right);
-    // Quaternion of the matrix (right, up, back): largest of the four squares first (Shepperd 1978).
+    // Quaternion of the matrix (right, up, back): largest of the four squares first (Shepperd
+    // 1978).
     float m00 = right.x, m11 = up.y, m22 = back.z, trace = m00 + m11 + m22;
     core_quat q;
     if (trace > 0) {
@@ -170,7 +171,7 @@ static int light_destroy(script *s, lua_State *L, void *args) {
 }
 
 #define COLOR_ARG(T, member)                                                                       \
-    {#member, BIND_NUMBER, BIND_AT(T, member), "linear", NULL, BIND_NOT_NEGATIVE}
+    { #member, BIND_NUMBER, BIND_AT(T, member), "linear", NULL, BIND_NOT_NEGATIVE }
 
 static const bind_fn light_methods[] = {
     {"setPosition", "Moves a point or spot light.",
@@ -185,8 +186,7 @@ static const bind_fn light_methods[] = {
                {"intensity", BIND_NUMBER, BIND_AT(light_color_args, intensity),
                 "point, spot: radiant intensity; directional: irradiance", NULL,
                 BIND_NOT_NEGATIVE}),
-     NULL, sizeof(light_color_args), BIND_RUNNING, .mod = true, .cost = 8,
-     .run = light_set_color},
+     NULL, sizeof(light_color_args), BIND_RUNNING, .mod = true, .cost = 8, .run = light_set_color},
     {"destroy", "Removes the light.", NULL, NULL, sizeof(core_handle), BIND_RUNNING, .mod = true,
      .cost = 20, .run = light_destroy},
     {0}};
@@ -235,8 +235,8 @@ typedef struct render_args {
     int method;
 } render_args;
 static int set_render(script *s, lua_State *L, void *args) {
-    return done(L, gfx_world_set(scene_gfx(s->scene), "render",
-                                 renders[((render_args *)args)->method]));
+    return done(
+        L, gfx_world_set(scene_gfx(s->scene), "render", renders[((render_args *)args)->method]));
 }
 
 // ---- declarations ----
@@ -248,8 +248,8 @@ static const bind_arg camera_fields[] = {
      .optional = true, .def_text = "as before", BIND_GIVEN(camera_options, has_target)},
     {"rotation", BIND_QUAT, BIND_AT(camera_options, rotation), "in place of target; looks along -Z",
      .optional = true, .def_text = "as before", BIND_GIVEN(camera_options, has_rotation)},
-    {"fov", BIND_FLOAT, BIND_AT(camera_options, fov), "vertical field of view", "rad",
-     BIND_BETWEEN, .min = 0.01, .max = 3, .optional = true, .def = 1.0471975511965976},
+    {"fov", BIND_FLOAT, BIND_AT(camera_options, fov), "vertical field of view", "rad", BIND_BETWEEN,
+     .min = 0.01, .max = 3, .optional = true, .def = 1.0471975511965976},
     {"near", BIND_FLOAT, BIND_AT(camera_options, near_plane), "nearest visible distance", "m",
      BIND_POSITIVE, .optional = true, .def = 0.1},
     {"far", BIND_FLOAT, BIND_AT(camera_options, far), "no point or spot light is seen beyond", "m",
@@ -259,8 +259,7 @@ static const bind_arg camera_fields[] = {
 static const bind_arg light_fields[] = {
     {"type", BIND_ENUM, BIND_AT(light_options, type), "kind of source", .optional = true,
      .values = LIGHT_TYPES},
-    {"position", BIND_VEC3, BIND_AT(light_options, position), "point, spot", "m",
-     .optional = true},
+    {"position", BIND_VEC3, BIND_AT(light_options, position), "point, spot", "m", .optional = true},
     {"direction", BIND_VEC3, BIND_AT(light_options, direction),
      "spot, directional: where the light goes", .optional = true, .def_vec = {0, -1, 0}},
     {"color", BIND_COLOR, BIND_AT(light_options, color), "linear", .optional = true,
@@ -276,9 +275,9 @@ static const bind_arg light_fields[] = {
      BIND_BETWEEN, .max = 1.57, .optional = true, .def = 0.5},
     {0}};
 
-#define RGB_ARGS                                                                                   \
-    BIND_ARGS(COLOR_ARG(rgb_args, r), COLOR_ARG(rgb_args, g), COLOR_ARG(rgb_args, b))
-#define PIXELS(T, member, what) {#member, BIND_NUMBER, BIND_AT(T, member), what, "pixels"}
+#define RGB_ARGS BIND_ARGS(COLOR_ARG(rgb_args, r), COLOR_ARG(rgb_args, g), COLOR_ARG(rgb_args, b))
+#define PIXELS(T, member, what)                                                                    \
+    { #member, BIND_NUMBER, BIND_AT(T, member), what, "pixels" }
 
 static const bind_fn functions[] = {
     {"setBackground", "Colour where nothing is drawn.", RGB_ARGS, NULL, sizeof(rgb_args),

@@ -9,8 +9,7 @@
 
 #define BODY_TYPES  "dynamic|static|kinematic"
 #define SHAPE_TYPES "sphere|box|plane|capsule|cylinder|hull"
-static const char *const shape_names[] = {"sphere",  "box",      "plane",
-                                          "capsule", "cylinder", "hull"};
+static const char *const shape_names[] = {"sphere", "box", "plane", "capsule", "cylinder", "hull"};
 
 #define SHAPE_FIELDS                                                                               \
     {"shape",                                                                                      \
@@ -63,14 +62,9 @@ static const char *const shape_names[] = {"sphere",  "box",      "plane",
          "m",                                                                                      \
          .optional = true,                                                                         \
          BIND_GIVEN(bind_shape_options, has_points)},                                              \
-        {"density",                                                                                \
-         BIND_FLOAT,                                                                               \
-         BIND_AT(bind_shape_options, density),                                                     \
-         "mass per volume",                                                                        \
-         "kg/m^3",                                                                                 \
-         BIND_POSITIVE,                                                                            \
-         .optional = true,                                                                         \
-         .def = 1000},                                                                             \
+        {"density",         BIND_FLOAT, BIND_AT(bind_shape_options, density),                      \
+         "mass per volume", "kg/m^3",   BIND_POSITIVE,                                             \
+         .optional = true,  .def = 1000},                                                          \
         {"friction",                                                                               \
          BIND_FLOAT,                                                                               \
          BIND_AT(bind_shape_options, friction),                                                    \
@@ -109,24 +103,12 @@ static const bind_arg shape_fields[] = {
          .optional = true,                                                                         \
          .def = PHYS_DYNAMIC,                                                                      \
          .values = BODY_TYPES},                                                                    \
-        {"velocity",                                                                               \
-         BIND_VEC3,                                                                                \
-         BIND_AT(bind_body_options, velocity),                                                     \
-         "at the start",                                                                           \
-         "m/s",                                                                                    \
-         .optional = true},                                                                        \
-        {"angularVelocity",                                                                        \
-         BIND_VEC3,                                                                                \
-         BIND_AT(bind_body_options, angular_velocity),                                             \
-         "at the start",                                                                           \
-         "rad/s",                                                                                  \
-         .optional = true},                                                                        \
-        {"linearDamping",                                                                          \
-         BIND_FLOAT,                                                                               \
-         BIND_AT(bind_body_options, linear_damping),                                               \
-         "loss of velocity",                                                                       \
-         "1/s",                                                                                    \
-         BIND_NOT_NEGATIVE,                                                                        \
+        {"velocity",     BIND_VEC3, BIND_AT(bind_body_options, velocity),                          \
+         "at the start", "m/s",     .optional = true},                                             \
+        {"angularVelocity", BIND_VEC3, BIND_AT(bind_body_options, angular_velocity),               \
+         "at the start",    "rad/s",   .optional = true},                                          \
+        {"linearDamping",    BIND_FLOAT, BIND_AT(bind_body_options, linear_damping),               \
+         "loss of velocity", "1/s",      BIND_NOT_NEGATIVE,                                        \
          .optional = true},                                                                        \
         {"angularDamping",                                                                         \
          BIND_FLOAT,                                                                               \
@@ -135,12 +117,8 @@ static const bind_arg shape_fields[] = {
          "1/s",                                                                                    \
          BIND_NOT_NEGATIVE,                                                                        \
          .optional = true},                                                                        \
-        {"gravityScale",                                                                           \
-         BIND_FLOAT,                                                                               \
-         BIND_AT(bind_body_options, gravity_scale),                                                \
-         "factor on gravity",                                                                      \
-         .optional = true,                                                                         \
-         .def = 1},                                                                                \
+        {"gravityScale",      BIND_FLOAT,       BIND_AT(bind_body_options, gravity_scale),         \
+         "factor on gravity", .optional = true, .def = 1},                                         \
     {                                                                                              \
         "layer", BIND_INT, BIND_AT(bind_body_options, layer), "collision layer", NULL,             \
             BIND_BETWEEN, .max = 31, .optional = true                                              \
@@ -158,17 +136,21 @@ static void check_fit(lua_State *L, const char *owner, const bind_shape_options 
     wrong = o->has_normal && o->shape != PHYS_PLANE ? "normal" : wrong;
     wrong = o->has_points && o->shape != PHYS_HULL ? "points" : wrong;
     if (!o->has_shape) {
-        bind_error(L, "%s: the body has no shape; expected shape = \"sphere\", \"box\", \"plane\", "
-                      "\"capsule\", \"cylinder\" or \"hull\"", owner);
+        bind_error(L,
+                   "%s: the body has no shape; expected shape = \"sphere\", \"box\", \"plane\", "
+                   "\"capsule\", \"cylinder\" or \"hull\"",
+                   owner);
     }
     if (wrong) {
-        static const char *const takes[] = {"radius", "size", "normal", "radius and height",
-                                            "radius and height", "points"};
+        static const char *const takes[] = {
+            "radius", "size", "normal", "radius and height", "radius and height", "points"};
         bind_error(L, "%s: a %s has no \"%s\"; it takes %s", owner, shape, wrong, takes[o->shape]);
     }
     if (o->shape == PHYS_HULL && (o->points.count < 12 || o->points.count % 3 != 0)) {
-        bind_error(L, "%s: a hull needs at least four corners, three numbers each; points has %u "
-                      "numbers", owner, (unsigned)o->points.count);
+        bind_error(L,
+                   "%s: a hull needs at least four corners, three numbers each; points has %u "
+                   "numbers",
+                   owner, (unsigned)o->points.count);
     }
 }
 
@@ -213,16 +195,20 @@ uint32_t bind_body_read(lua_State *L, const char *owner, const bind_body_options
 }
 
 core_vec3 bind_body_mesh_scale(const bind_body_options *options) {
-    const bind_shape_options *o =
-        options->shapes.count ? options->shapes.items : &options->shape;
+    const bind_shape_options *o = options->shapes.count ? options->shapes.items : &options->shape;
     float d = 2 * o->radius;
     switch (o->shape) {
-    case PHYS_SPHERE: return core_v3(d, d, d);
-    case PHYS_BOX: return o->size;
+    case PHYS_SPHERE:
+        return core_v3(d, d, d);
+    case PHYS_BOX:
+        return o->size;
     case PHYS_CAPSULE:
-    case PHYS_CYLINDER: return core_v3(d, o->height, d);
-    case PHYS_PLANE: return core_v3(200, 1, 200);
-    default: return core_v3(1, 1, 1);
+    case PHYS_CYLINDER:
+        return core_v3(d, o->height, d);
+    case PHYS_PLANE:
+        return core_v3(200, 1, 200);
+    default:
+        return core_v3(1, 1, 1);
     }
 }
 
@@ -298,9 +284,8 @@ static int set_rotation(script *s, lua_State *L, void *args) {
     core_quat q =
         core_quat_normalize((core_quat){(float)a->x, (float)a->y, (float)a->z, (float)a->w});
     scene_entity e = scene_entity_of_body(s->scene, a->self);
-    return done(L, core_handle_is_null(e)
-                       ? phys_body_set_rotation(scene_phys(s->scene), a->self, q)
-                       : scene_set_rotation(s->scene, e, q));
+    return done(L, core_handle_is_null(e) ? phys_body_set_rotation(scene_phys(s->scene), a->self, q)
+                                          : scene_set_rotation(s->scene, e, q));
 }
 
 static int apply_impulse(script *s, lua_State *L, void *args) {
@@ -349,13 +334,13 @@ static int is_destroyed(script *s, lua_State *L, void *args) {
     BIND_RETURNS({"x", "number", unit_text}, {"y", "number", unit_text}, {"z", "number", unit_text})
 #define GETTER(fn_name, text, unit_text, handler)                                                  \
     {                                                                                              \
-        fn_name, text, NULL, XYZ(unit_text), sizeof(core_handle), BIND_RUNNING, .mod = true,       \
-            .cost = 4, .run = handler                                                              \
+        fn_name, text, NULL, XYZ(unit_text), sizeof(core_handle), BIND_RUNNING,                    \
+            .mod = true, .cost = 4, .run = handler                                                 \
     }
 #define SETTER(fn_name, text, unit_text, handler)                                                  \
     {                                                                                              \
-        fn_name, text, XYZ_ARGS(unit_text), NULL, sizeof(vector_args), BIND_SIM, .mod = true,      \
-            .cost = 8, .run = handler                                                              \
+        fn_name, text, XYZ_ARGS(unit_text), NULL, sizeof(vector_args), BIND_SIM,                   \
+            .mod = true, .cost = 8, .run = handler                                                 \
     }
 
 static const bind_fn body_methods[] = {
@@ -408,8 +393,7 @@ typedef struct gravity_args {
 static int set_gravity(script *s, lua_State *L, void *args) {
     const gravity_args *a = args;
     (void)L;
-    phys_world_set_gravity(scene_phys(s->scene),
-                           core_v3((float)a->x, (float)a->y, (float)a->z));
+    phys_world_set_gravity(scene_phys(s->scene), core_v3((float)a->x, (float)a->y, (float)a->z));
     return 0;
 }
 static int get_gravity(script *s, lua_State *L, void *args) {

@@ -24,7 +24,7 @@ static int spawn(script *s, lua_State *L, void *args) {
     scene_spawn_desc desc = scene_spawn_desc_default();
     phys_body_desc body = phys_body_desc_default();
     phys_shape_desc shapes[BIND_SHAPES_MAX];
-    gfx_instance_desc draw = gfx_instance_desc_default();
+    gfx_instance_desc draw = {0};
     desc.position = o->position;
     desc.rotation = o->rotation;
     desc.scale = o->scale;
@@ -197,14 +197,14 @@ static const bind_fn entity_methods[] = {
      BIND_RETURNS({"parent", "corsac.Entity?", NULL}), sizeof(core_handle), BIND_RUNNING,
      .mod = true, .cost = 4, .run = get_parent},
     {"setParent", "Hangs it on another entity (nil: on none); it stays where it is.",
-     BIND_ARGS({"parent", BIND_OBJECT, BIND_AT(parent_args, parent), "new parent",
-                .optional = true, .def_text = "nil", .type = &bind_entity_type}),
+     BIND_ARGS({"parent", BIND_OBJECT, BIND_AT(parent_args, parent), "new parent", .optional = true,
+                .def_text = "nil", .type = &bind_entity_type}),
      NULL, sizeof(parent_args), BIND_SIM, .mod = true, .cost = 20, .run = set_parent},
     {"isDestroyed", "Whether it was destroyed; every other method then raises an error.", NULL,
      BIND_RETURNS({"destroyed", "boolean", NULL}), sizeof(core_handle), BIND_ANY, .mod = true,
      .cost = 2, .run = is_destroyed},
-    {"destroy", "Removes it, its body, its mesh and its children.", NULL, NULL,
-     sizeof(core_handle), BIND_SIM, .mod = true, .cost = 100, .run = destroy},
+    {"destroy", "Removes it, its body, its mesh and its children.", NULL, NULL, sizeof(core_handle),
+     BIND_SIM, .mod = true, .cost = 100, .run = destroy},
     {0}};
 
 const bind_type bind_entity_type = {"Entity", "A thing in the scene.", entity_alive,
@@ -217,8 +217,8 @@ static const bind_arg spawn_fields[] = {
      .optional = true, .def_text = "none"},
     {"scale", BIND_VEC3, BIND_AT(spawn_options, scale), "of the mesh and of children", NULL,
      BIND_POSITIVE, .optional = true, .def_vec = {1, 1, 1}, .uniform = true},
-    {"parent", BIND_OBJECT, BIND_AT(spawn_options, parent), "entity it hangs on",
-     .optional = true, .def_text = "nil", .type = &bind_entity_type},
+    {"parent", BIND_OBJECT, BIND_AT(spawn_options, parent), "entity it hangs on", .optional = true,
+     .def_text = "nil", .type = &bind_entity_type},
     {"body", BIND_OPTIONS, BIND_AT(spawn_options, body), "its rigid body", .optional = true,
      .def_text = "none", BIND_GIVEN(spawn_options, has_body), .fields = bind_body_fields},
     {"mesh", BIND_STRING, BIND_AT(spawn_options, mesh),
@@ -226,8 +226,7 @@ static const bind_arg spawn_fields[] = {
      .optional = true},
     {"color", BIND_COLOR, BIND_AT(spawn_options, color), "multiplies the material's",
      .optional = true, .def_vec = {1, 1, 1}},
-    {"name", BIND_STRING, BIND_AT(spawn_options, name), "for corsac.scene.find",
-     .optional = true},
+    {"name", BIND_STRING, BIND_AT(spawn_options, name), "for corsac.scene.find", .optional = true},
     {0}};
 
 static const bind_fn functions[] = {
@@ -238,8 +237,8 @@ static const bind_fn functions[] = {
      .cost = 2000, .run = spawn},
     {"find", "The oldest entity of that name, or nil.",
      BIND_ARGS({"name", BIND_STRING, BIND_AT(find_args, name), "as given to spawn"}),
-     BIND_RETURNS({"entity", "corsac.Entity?", NULL}), sizeof(find_args), BIND_RUNNING,
-     .mod = true, .cost = 500, .run = find},
+     BIND_RETURNS({"entity", "corsac.Entity?", NULL}), sizeof(find_args), BIND_RUNNING, .mod = true,
+     .cost = 500, .run = find},
     {"getCount", "How many entities there are.", NULL, BIND_RETURNS({"count", "integer", NULL}), 0,
      BIND_RUNNING, .mod = true, .cost = 4, .run = get_count},
     {0}};

@@ -24,10 +24,9 @@ static const bind_arg conf_fields[] = {
      .range = BIND_NOT_NEGATIVE, BIND_GIVEN(conf_values, has_seed)},
     {"threads", BIND_INT, BIND_AT(conf_values, threads), "worker threads", .optional = true,
      .range = BIND_BETWEEN, .min = 1, .max = 64},
-    {"size", BIND_TABLE, BIND_AT(conf_values, size), "{width, height}", "pixels",
-     .optional = true},
-    {"render", BIND_ENUM, BIND_AT(conf_values, render), "how lights are assigned",
-     .optional = true, .values = RENDERS, BIND_GIVEN(conf_values, has_render)},
+    {"size", BIND_TABLE, BIND_AT(conf_values, size), "{width, height}", "pixels", .optional = true},
+    {"render", BIND_ENUM, BIND_AT(conf_values, render), "how lights are assigned", .optional = true,
+     .values = RENDERS, BIND_GIVEN(conf_values, has_render)},
     {"title", BIND_STRING, BIND_AT(conf_values, title), "title of the window", .optional = true},
     {"phys", BIND_TABLE, BIND_AT(conf_values, phys), "settings", .optional = true},
     {"gfx", BIND_TABLE, BIND_AT(conf_values, gfx), "settings", .optional = true},
@@ -84,7 +83,7 @@ static void read_settings(lua_State *L, int index, const char *room, script_conf
 static void sort_settings(script_conf *conf) {
     for (uint32_t i = 1; i < conf->setting_count; i++) {
         for (uint32_t j = i; j > 0; j--) {
-            char (*name)[64] = conf->setting_name, (*value)[64] = conf->setting_value, keep[64];
+            char(*name)[64] = conf->setting_name, (*value)[64] = conf->setting_value, keep[64];
             if (strcmp(name[j - 1], name[j]) <= 0) {
                 break;
             }

@@ -42,12 +42,12 @@ struct script {
     int argc;
     int error_count;
     char *last_error;
-    uint32_t stopped; // bind_phase bits of callbacks that an error has stopped
-    char *run_data;   // JSON handed to the next scene by corsac.run
-    double time;      // s of simulated time
-    int corsac_ref;   // the table `corsac`
+    uint32_t stopped;     // bind_phase bits of callbacks that an error has stopped
+    char *run_data;       // JSON handed to the next scene by corsac.run
+    double time;          // s of simulated time
+    int corsac_ref;       // the table `corsac`
     int error_screen_ref; // scripts/corsac/error.lua
-    char root[200];   // virtual folder of the game with its '/', "" for the tree's root
+    char root[200];       // virtual folder of the game with its '/', "" for the tree's root
 };
 
 // Lua's userdata of an object.

@@ -96,16 +96,24 @@ static void write_table(json_writer *w, int index, const char *key) {
 static void write_value(json_writer *w, int index, const char *key) {
     lua_State *L = w->L;
     switch (lua_type(L, index)) {
-    case LUA_TBOOLEAN: core_json_bool(&w->out, key, lua_toboolean(L, index)); break;
-    case LUA_TSTRING: core_json_string(&w->out, key, lua_tostring(L, index)); break;
+    case LUA_TBOOLEAN:
+        core_json_bool(&w->out, key, lua_toboolean(L, index));
+        break;
+    case LUA_TSTRING:
+        core_json_string(&w->out, key, lua_tostring(L, index));
+        break;
     case LUA_TNUMBER:
         if (!isfinite(lua_tonumber(L, index))) {
             refuse(w, "is not finite");
         }
         core_json_number(&w->out, key, lua_tonumber(L, index));
         break;
-    case LUA_TTABLE: write_table(w, index, key); break;
-    case LUA_TNIL: core_json_null(&w->out, key); break;
+    case LUA_TTABLE:
+        write_table(w, index, key);
+        break;
+    case LUA_TNIL:
+        core_json_null(&w->out, key);
+        break;
     default: {
         char why[64];
         snprintf(why, sizeof why, "is a %s", luaL_typename(L, index));

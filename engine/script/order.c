@@ -1,8 +1,8 @@
 // One order for walking a table, the same in every run: numbers ascending, then strings by bytes,
 // false, true, then the engine's objects by class and handle. LuaJIT's own order depends on
 // addresses and on which strings were made before.
-#include "script/internal.h"
 #include "script/order.h"
+#include "script/internal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,9 @@ static bool is_object(lua_State *L, int index) {
 static void read_key(lua_State *L, int index, order_key *out) {
     *out = (order_key){0};
     switch (lua_type(L, index)) {
-    case LUA_TNUMBER: out->number = lua_tonumber(L, index); return;
+    case LUA_TNUMBER:
+        out->number = lua_tonumber(L, index);
+        return;
     case LUA_TSTRING:
         out->rank = 1;
         out->text = lua_tolstring(L, index, &out->length);
@@ -47,11 +49,13 @@ static void read_key(lua_State *L, int index, order_key *out) {
             return;
         }
         break;
-    default: break;
+    default:
+        break;
     }
-    bind_error(L, "this table has a %s as key; such keys have no order that is the same in every "
-                  "run, so they cannot be walked with pairs or next. Use corsac.newMap() (ordered "
-                  "by insertion) or an array",
+    bind_error(L,
+               "this table has a %s as key; such keys have no order that is the same in every "
+               "run, so they cannot be walked with pairs or next. Use corsac.newMap() (ordered "
+               "by insertion) or an array",
                luaL_typename(L, index));
 }
 

@@ -101,8 +101,13 @@ static void push_traceback(lua_State *L) {
         }
         bool main = strcmp(frame.what, "main") == 0;
         snprintf(line, sizeof line, "\n    %s:%d: in %s%s%s", frame.short_src, frame.currentline,
-                 main ? "the file's own code" : frame.name ? "'" : "a function",
-                 main ? "" : frame.name ? frame.name : "", main || !frame.name ? "" : "'");
+                 main         ? "the file's own code"
+                 : frame.name ? "'"
+                              : "a function",
+                 main         ? ""
+                 : frame.name ? frame.name
+                              : "",
+                 main || !frame.name ? "" : "'");
         luaL_addstring(&text, line);
         lines++;
     }
@@ -260,12 +265,18 @@ bool script_param_declared(const script *s, const char *name) {
 
 bool script_compare(double a, script_op op, double b) {
     switch (op) {
-    case OP_LE: return a <= b;
-    case OP_LT: return a < b;
-    case OP_GE: return a >= b;
-    case OP_GT: return a > b;
-    case OP_EQ: return a == b;
-    case OP_NE: return a != b;
+    case OP_LE:
+        return a <= b;
+    case OP_LT:
+        return a < b;
+    case OP_GE:
+        return a >= b;
+    case OP_GT:
+        return a > b;
+    case OP_EQ:
+        return a == b;
+    case OP_NE:
+        return a != b;
     }
     return false;
 }
@@ -276,7 +287,9 @@ int script_check_expectations(script *s) {
     for (int i = 0; i < s->expect_count; i++) {
         const script_expect *e = &s->expect[i];
         bool known = e->missed;
-        double value = e->missed ? e->found : s->host.metric ? s->host.metric(s->host.ctx, e->metric, &known) : 0;
+        double value = e->missed        ? e->found
+                       : s->host.metric ? s->host.metric(s->host.ctx, e->metric, &known)
+                                        : 0;
         if (known && !e->missed && script_compare(value, e->op, e->value)) {
             continue;
         }

@@ -66,8 +66,8 @@ const char *script_last_error(const script *s);
 // corsac.expect: evaluates registered checks. Returns how many fell short; each is logged.
 int script_check_expectations(script *s);
 size_t script_bytes(const script *s); // Lua heap
-// JSON text of the data that corsac.run(path, data) handed over, NULL when there is none. Valid until
-// the script is destroyed: copy it into the next script's desc.data.
+// JSON text of the data that corsac.run(path, data) handed over, NULL when there is none. Valid
+// until the script is destroyed: copy it into the next script's desc.data.
 const char *script_run_data(const script *s);
 // Names given with --set that no corsac.param declared; NULL-terminated by count.
 bool script_param_declared(const script *s, const char *name);

@@ -131,11 +131,11 @@ static int engine_find_module(lua_State *L) {
 }
 
 static const luaL_Reg engine_functions[] = {
-    {"keys", script_order_keys},         {"next", script_order_next},
-    {"simulating", engine_simulating},   {"random", engine_random},
-    {"reseed", engine_reseed},           {"print", engine_print},
-    {"describe", engine_describe},       {"loadFile", engine_load_file},
-    {"findModule", engine_find_module},  {NULL, NULL}};
+    {"keys", script_order_keys},        {"next", script_order_next},
+    {"simulating", engine_simulating},  {"random", engine_random},
+    {"reseed", engine_reseed},          {"print", engine_print},
+    {"describe", engine_describe},      {"loadFile", engine_load_file},
+    {"findModule", engine_find_module}, {NULL, NULL}};
 
 static void push_engine(script *s, lua_State *L) {
     lua_newtable(L);
