@@ -8,21 +8,44 @@
 #define CORE_STAGES(X)                                                                             \
     X(SCRIPT, "script")                                                                            \
     X(SCENE, "scene")                                                                              \
-    X(PHYS, "phys") X(PHYS_FIELDS, "phys.fields") X(PHYS_BROAD, "phys.broad")                      \
-        X(PHYS_NARROW, "phys.narrow") X(PHYS_ISLANDS, "phys.islands") X(PHYS_SOLVE, "phys.solve")  \
-            X(PHYS_CCD, "phys.ccd") X(ANIM, "anim") X(NAV, "nav") X(AUDIO, "audio")                \
-                X(METRICS, "metrics") X(GFX_CULL, "gfx.cull") X(GFX_CLUSTER, "gfx.cluster")        \
-                    X(GFX_DRAW, "gfx.draw") X(GFX_GPU, "gfx.gpu")
+    X(PHYS, "phys")                                                                                \
+    X(PHYS_FIELDS, "phys.fields")                                                                  \
+    X(PHYS_BROAD, "phys.broad")                                                                    \
+    X(PHYS_NARROW, "phys.narrow")                                                                  \
+    X(PHYS_ISLANDS, "phys.islands")                                                                \
+    X(PHYS_SOLVE, "phys.solve")                                                                    \
+    X(PHYS_CCD, "phys.ccd")                                                                        \
+    X(ANIM, "anim")                                                                                \
+    X(NAV, "nav")                                                                                  \
+    X(AUDIO, "audio")                                                                              \
+    X(METRICS, "metrics")                                                                          \
+    X(GFX_CULL, "gfx.cull")                                                                        \
+    X(GFX_CLUSTER, "gfx.cluster")                                                                  \
+    X(GFX_DRAW, "gfx.draw")                                                                        \
+    X(GFX_GPU, "gfx.gpu")
 
 #define CORE_COUNTS(X)                                                                             \
     X(BODIES, "bodies")                                                                            \
     X(AWAKE, "awake")                                                                              \
-    X(SHAPES, "shapes") X(PAIRS, "pairs") X(CONTACTS, "contacts") X(JOINTS, "joints")              \
-        X(ISLANDS, "islands") X(TRIGGERS, "triggers") X(LIGHTS, "lights") X(CLUSTERS, "clusters")  \
-            X(LIGHT_REFS, "light_refs") X(DRAWS, "draws") X(TRIANGLES, "triangles")                \
-                X(SKELETONS, "skeletons") X(BONES, "bones") X(NAV_NODES, "nav_nodes")              \
-                    X(AGENTS, "agents") X(PATHS, "paths") X(VOICES, "voices")                      \
-                        X(ENTITIES, "entities") X(LUA_KB, "lua_kb")
+    X(SHAPES, "shapes")                                                                            \
+    X(PAIRS, "pairs")                                                                              \
+    X(CONTACTS, "contacts")                                                                        \
+    X(JOINTS, "joints")                                                                            \
+    X(ISLANDS, "islands")                                                                          \
+    X(TRIGGERS, "triggers")                                                                        \
+    X(LIGHTS, "lights")                                                                            \
+    X(CLUSTERS, "clusters")                                                                        \
+    X(LIGHT_REFS, "light_refs")                                                                    \
+    X(DRAWS, "draws")                                                                              \
+    X(TRIANGLES, "triangles")                                                                      \
+    X(SKELETONS, "skeletons")                                                                      \
+    X(BONES, "bones")                                                                              \
+    X(NAV_NODES, "nav_nodes")                                                                      \
+    X(AGENTS, "agents")                                                                            \
+    X(PATHS, "paths")                                                                              \
+    X(VOICES, "voices")                                                                            \
+    X(ENTITIES, "entities")                                                                        \
+    X(LUA_KB, "lua_kb")
 
 #define CORE_ENUM_STAGE_(id, name) CORE_STAGE_##id,
 #define CORE_ENUM_COUNT_(id, name) CORE_COUNT_##id,

@@ -32,29 +32,41 @@ enum {
 #define PHYS_BODY_COLUMNS(X)                                                                       \
     X(float, px, CORE_COLUMN_STATE)                                                                \
     X(float, py, CORE_COLUMN_STATE)                                                                \
-    X(float, pz, CORE_COLUMN_STATE) X(float, qx, CORE_COLUMN_STATE) X(                             \
-        float, qy, CORE_COLUMN_STATE) X(float, qz, CORE_COLUMN_STATE)                              \
-        X(float, qw, CORE_COLUMN_STATE) X(float, vx, CORE_COLUMN_STATE) X(                         \
-            float, vy, CORE_COLUMN_STATE) X(float, vz, CORE_COLUMN_STATE)                          \
-            X(float, wx, CORE_COLUMN_STATE) X(float, wy, CORE_COLUMN_STATE) X(                     \
-                float, wz, CORE_COLUMN_STATE) X(float, cx, CORE_COLUMN_STATE) X(float, cy,         \
-                                                                                CORE_COLUMN_STATE) \
-                X(float, cz, CORE_COLUMN_STATE) X(float, lcx, CORE_COLUMN_STATE) X(                \
-                    float, lcy, CORE_COLUMN_STATE) X(float, lcz, CORE_COLUMN_STATE)                \
-                    X(float, im, CORE_COLUMN_STATE) X(float, ix, CORE_COLUMN_STATE) X(             \
-                        float, iy, CORE_COLUMN_STATE) X(float, iz, CORE_COLUMN_STATE)              \
-                        X(core_quat, iq, CORE_COLUMN_STATE) X(core_vec3, force, CORE_COLUMN_STATE) \
-                            X(core_vec3, torque,                                                   \
-                              CORE_COLUMN_STATE) X(float, linear_damping, CORE_COLUMN_STATE)       \
-                                X(float, angular_damping,                                          \
-                                  CORE_COLUMN_STATE) X(float, gravity_scale, CORE_COLUMN_STATE)    \
-                                    X(uint8_t, type,                                               \
-                                      CORE_COLUMN_STATE) X(uint8_t, layer, CORE_COLUMN_STATE)      \
-                                        X(uint16_t, flags, CORE_COLUMN_STATE)                      \
-                                            X(uint32_t, shape,                                     \
-                                              CORE_COLUMN_STATE) /* first shape's slot; 0: none */ \
-        X(uint64_t, user, CORE_COLUMN_STATE) X(uint32_t, touching, 0) /* contacts of this step */  \
-        X(core_vec3, seen, 0) X(uint8_t, through, 0) /* accuracy: place at the last sample */
+    X(float, pz, CORE_COLUMN_STATE)                                                                \
+    X(float, qx, CORE_COLUMN_STATE)                                                                \
+    X(float, qy, CORE_COLUMN_STATE)                                                                \
+    X(float, qz, CORE_COLUMN_STATE)                                                                \
+    X(float, qw, CORE_COLUMN_STATE)                                                                \
+    X(float, vx, CORE_COLUMN_STATE)                                                                \
+    X(float, vy, CORE_COLUMN_STATE)                                                                \
+    X(float, vz, CORE_COLUMN_STATE)                                                                \
+    X(float, wx, CORE_COLUMN_STATE)                                                                \
+    X(float, wy, CORE_COLUMN_STATE)                                                                \
+    X(float, wz, CORE_COLUMN_STATE)                                                                \
+    X(float, cx, CORE_COLUMN_STATE)                                                                \
+    X(float, cy, CORE_COLUMN_STATE)                                                                \
+    X(float, cz, CORE_COLUMN_STATE)                                                                \
+    X(float, lcx, CORE_COLUMN_STATE)                                                               \
+    X(float, lcy, CORE_COLUMN_STATE)                                                               \
+    X(float, lcz, CORE_COLUMN_STATE)                                                               \
+    X(float, im, CORE_COLUMN_STATE)                                                                \
+    X(float, ix, CORE_COLUMN_STATE)                                                                \
+    X(float, iy, CORE_COLUMN_STATE)                                                                \
+    X(float, iz, CORE_COLUMN_STATE)                                                                \
+    X(core_quat, iq, CORE_COLUMN_STATE)                                                            \
+    X(core_vec3, force, CORE_COLUMN_STATE)                                                         \
+    X(core_vec3, torque, CORE_COLUMN_STATE)                                                        \
+    X(float, linear_damping, CORE_COLUMN_STATE)                                                    \
+    X(float, angular_damping, CORE_COLUMN_STATE)                                                   \
+    X(float, gravity_scale, CORE_COLUMN_STATE)                                                     \
+    X(uint8_t, type, CORE_COLUMN_STATE)                                                            \
+    X(uint8_t, layer, CORE_COLUMN_STATE)                                                           \
+    X(uint16_t, flags, CORE_COLUMN_STATE)                                                          \
+    X(uint32_t, shape, CORE_COLUMN_STATE) /* first shape's slot; 0: none */                        \
+    X(uint64_t, user, CORE_COLUMN_STATE)                                                           \
+    X(uint32_t, touching, 0) /* contacts of this step */                                           \
+    X(core_vec3, seen, 0)                                                                          \
+    X(uint8_t, through, 0) /* accuracy: place at the last sample */
 CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
 
 // body: slot (handle index) of the owner. next: slot of the body's next shape. x0..z1: bounds,
@@ -62,14 +74,20 @@ CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
 #define PHYS_SHAPE_COLUMNS(X)                                                                      \
     X(uint32_t, body, CORE_COLUMN_STATE)                                                           \
     X(uint32_t, next, CORE_COLUMN_STATE)                                                           \
-    X(uint32_t, type, CORE_COLUMN_STATE) X(core_vec3, half, CORE_COLUMN_STATE)                     \
-        X(float, radius, CORE_COLUMN_STATE) X(core_vec3, position, CORE_COLUMN_STATE)              \
-            X(core_quat, rotation, CORE_COLUMN_STATE) X(float, friction, CORE_COLUMN_STATE)        \
-                X(float, restitution, CORE_COLUMN_STATE) X(float, x0, CORE_COLUMN_STATE)           \
-                    X(float, y0, CORE_COLUMN_STATE) X(float, z0, CORE_COLUMN_STATE)                \
-                        X(float, x1, CORE_COLUMN_STATE) X(float, y1, CORE_COLUMN_STATE)            \
-                            X(float, z1, CORE_COLUMN_STATE)                                        \
-                                X(uint32_t, row, 0) /* the owner's row, of this step */
+    X(uint32_t, type, CORE_COLUMN_STATE)                                                           \
+    X(core_vec3, half, CORE_COLUMN_STATE)                                                          \
+    X(float, radius, CORE_COLUMN_STATE)                                                            \
+    X(core_vec3, position, CORE_COLUMN_STATE)                                                      \
+    X(core_quat, rotation, CORE_COLUMN_STATE)                                                      \
+    X(float, friction, CORE_COLUMN_STATE)                                                          \
+    X(float, restitution, CORE_COLUMN_STATE)                                                       \
+    X(float, x0, CORE_COLUMN_STATE)                                                                \
+    X(float, y0, CORE_COLUMN_STATE)                                                                \
+    X(float, z0, CORE_COLUMN_STATE)                                                                \
+    X(float, x1, CORE_COLUMN_STATE)                                                                \
+    X(float, y1, CORE_COLUMN_STATE)                                                                \
+    X(float, z1, CORE_COLUMN_STATE)                                                                \
+    X(uint32_t, row, 0) /* the owner's row, of this step */
 CORE_COLUMNS_DECLARE(phys_shapes, PHYS_SHAPE_COLUMNS)
 
 // One contact point. ra, rb: from the centres of mass, world axes, at the start of the step.
@@ -90,15 +108,24 @@ typedef struct phys_manifold {
 #define PHYS_BALL_COLUMNS(X)                                                                       \
     X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
     X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
-    X(float, jn, CORE_COLUMN_STATE) X(float, jt1, CORE_COLUMN_STATE)                               \
-        X(float, jt2, CORE_COLUMN_STATE) X(float, nx, 0) X(float, ny, 0) X(float, nz, 0)           \
-            X(float, separation, 0) X(uint32_t, a, 0) X(uint32_t, b, 0) X(uint32_t, stamp, 0)
+    X(float, jn, CORE_COLUMN_STATE)                                                                \
+    X(float, jt1, CORE_COLUMN_STATE)                                                               \
+    X(float, jt2, CORE_COLUMN_STATE)                                                               \
+    X(float, nx, 0)                                                                                \
+    X(float, ny, 0)                                                                                \
+    X(float, nz, 0)                                                                                \
+    X(float, separation, 0)                                                                        \
+    X(uint32_t, a, 0)                                                                              \
+    X(uint32_t, b, 0)                                                                              \
+    X(uint32_t, stamp, 0)
 CORE_COLUMNS_DECLARE(phys_balls, PHYS_BALL_COLUMNS)
 #define PHYS_CONTACT_COLUMNS(X)                                                                    \
     X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
     X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
-    X(phys_manifold, manifold, CORE_COLUMN_STATE) X(uint32_t, a, 0) X(uint32_t, b, 0)              \
-        X(uint32_t, stamp, 0)
+    X(phys_manifold, manifold, CORE_COLUMN_STATE)                                                  \
+    X(uint32_t, a, 0)                                                                              \
+    X(uint32_t, b, 0)                                                                              \
+    X(uint32_t, stamp, 0)
 CORE_COLUMNS_DECLARE(phys_contacts, PHYS_CONTACT_COLUMNS)
 
 // Finds the contact of a pair of shape slots. Open addressing, rebuilt from the columns when

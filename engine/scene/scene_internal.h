@@ -52,12 +52,14 @@ typedef struct scene_name_text {
     char text[SCENE_NAME_MAX]; // zero-padded: the whole array is hashed
 } scene_name_text;
 #define SCENE_NAME_COLUMNS(X)                                                                      \
-    X(scene_name_text, text, CORE_COLUMN_STATE) X(core_handle, entity, CORE_COLUMN_STATE)
+    X(scene_name_text, text, CORE_COLUMN_STATE)                                                    \
+    X(core_handle, entity, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(scene_names, SCENE_NAME_COLUMNS)
 
 // One row: what the scene itself remembers from step to step.
 #define SCENE_CLOCK_COLUMNS(X)                                                                     \
-    X(uint64_t, step, CORE_COLUMN_STATE) X(core_rng, sim, CORE_COLUMN_STATE)
+    X(uint64_t, step, CORE_COLUMN_STATE)                                                           \
+    X(core_rng, sim, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(scene_clock, SCENE_CLOCK_COLUMNS)
 
 typedef struct scene_kept_setting { // given before its room was made
