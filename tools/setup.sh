@@ -50,6 +50,7 @@ build pc:stb libstb-dev
 build pc:libcjson libcjson-dev
 build file:/usr/lib*/libEGL_mesa.so.0 libegl-mesa0
 build file:/usr/lib*/dri/swrast_dri.so libgl1-mesa-dri
+build file:/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf fonts-dejavu-core
 build file:/etc/ssl/cert*.pem|/etc/ssl/certs/ca-certificates.crt ca-certificates
 build venv: python3-venv
 window cmd:xvfb-run xvfb

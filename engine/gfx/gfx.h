@@ -142,6 +142,9 @@ gfx_device *gfx_device_create(const gfx_device_desc *desc);
 void gfx_device_destroy(gfx_device *device);
 // Draws the world; false + core_fail on shader or GL errors (file and line).
 bool gfx_device_render(gfx_device *device, gfx_world *world);
+// Builds shaders whose files changed since anew (cheap when none did). A shader that fails keeps
+// its old form: false + core_fail with its file and line.
+bool gfx_device_reload(gfx_device *device);
 // The frame last rendered: RGBA8 sRGB, rows top to bottom, width*height*4 bytes.
 bool gfx_device_read(gfx_device *device, uint8_t *rgba);
 // The HDR target before tone mapping, linear, width*height*4 floats, rows top to bottom.

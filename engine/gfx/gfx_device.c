@@ -19,8 +19,11 @@ gfx_device_desc gfx_device_desc_default(void) {
 // Errors fail the call during which they happen; the rest is for the log.
 static void GLAD_API_PTR on_gl_message(GLenum source, GLenum type, GLuint id, GLenum severity,
                                        GLsizei length, const GLchar *message, const void *user) {
-    (void)source, (void)id, (void)length;
+    (void)id, (void)length;
     gfx_device *device = (gfx_device *)user;
+    if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) {
+        return; // gfx_shader.c reports these with file and line
+    }
     if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
         device->gl_errors++;
         core_fail("OpenGL: %s", message);
@@ -186,6 +189,11 @@ void gfx_device_present(gfx_device *device) {
 
 bool gfx_device_poll(gfx_device *device, gfx_event *out) {
     return device->context->table->poll(device->context, out);
+}
+
+bool gfx_device_reload(gfx_device *device) {
+    return device->context->table->make_current(device->context) &&
+           gfx_shaders_reload(&device->shaders);
 }
 
 const char *gfx_device_name(const gfx_device *device) { return device->name; }

@@ -21,15 +21,17 @@ typedef struct gfx_rgba {
 #define GFX_LIGHT_COLUMNS(X)                                                                       \
     X(uint32_t, type, 0)                                                                           \
     X(float, px, 0)                                                                                \
-    X(float, py, 0) X(float, pz, 0) X(float, dx, 0) X(float, dy, 0) X(float, dz, 0) X(float, r, 0) \
-        X(float, g, 0) X(float, b, 0) X(float, intensity, 0) X(float, radius, 0)                   \
-            X(float, inner, 0) X(float, outer, 0)
+    X(float, py, 0)                                                                                \
+    X(float, pz, 0) X(float, dx, 0) X(float, dy, 0) X(float, dz, 0) X(float, r, 0) X(float, g, 0)  \
+        X(float, b, 0) X(float, intensity, 0) X(float, radius, 0) X(float, inner, 0)               \
+            X(float, outer, 0)
 CORE_COLUMNS_DECLARE(gfx_lights, GFX_LIGHT_COLUMNS)
 
 #define GFX_INSTANCE_COLUMNS(X)                                                                    \
     X(gfx_rows, rows, 0)                                                                           \
     X(float, cx, 0)                                                                                \
-    X(float, cy, 0) X(float, cz, 0) X(float, cr, 0) /* bounding sphere, world */                   \
+    X(float, cy, 0)                                                                                \
+    X(float, cz, 0) X(float, cr, 0) /* bounding sphere, world */                                   \
         X(gfx_rgba, color, 0) X(gfx_mesh, mesh, 0) X(gfx_material, material, 0)                    \
             X(float *, palette, 0) X(uint32_t, palette_bones, 0)
 CORE_COLUMNS_DECLARE(gfx_instances, GFX_INSTANCE_COLUMNS)

@@ -14,11 +14,22 @@ typedef struct text {
     size_t length, capacity;
 } text;
 
+// From `first`, lines of the whole text are those of a file from `line` on. Drivers disagree on,
+// and get wrong, the source numbers of #line, so errors are placed by this map instead.
+typedef struct span {
+    int first, file, line;
+} span;
+
+enum { MAX_SPANS = 4 * GFX_SHADER_FILES };
+
 typedef struct source {
     core_vfs *vfs;
     text out;
+    int lines; // in out so far
     char file[GFX_SHADER_FILES][GFX_SHADER_PATH];
     int files;
+    span span[MAX_SPANS];
+    int spans;
     uint64_t stamp; // of all files together
 } source;
 
@@ -33,10 +44,20 @@ static void append(text *t, const char *data, size_t length) {
     t->data[t->length] = '\0';
 }
 
-static void append_line_mark(source *s, int line, int file) {
-    char mark[48];
-    int n = snprintf(mark, sizeof mark, "#line %d %d\n", line, file);
-    append(&s->out, mark, (size_t)n);
+static void append_line(source *s, const char *data, size_t length) {
+    append(&s->out, data, length);
+    if (length == 0 || data[length - 1] != '\n') {
+        append(&s->out, "\n", 1);
+    }
+    s->lines++;
+}
+
+static bool begin_span(source *s, int file, int line) {
+    if (s->spans == MAX_SPANS) {
+        return core_fail_quiet("more than %d #includes in one shader", MAX_SPANS);
+    }
+    s->span[s->spans++] = (span){s->lines + 1, file, line};
+    return true;
 }
 
 // The quoted name of an #include line, or false.
@@ -59,25 +80,21 @@ static bool include_name(const char *line, char *name, size_t size) {
 
 static bool add_file(source *s, const char *name);
 
-// Copies lines; an #include is replaced by the file's text, marked so that errors name their file.
+// Copies lines; an #include is replaced by the file's text.
 static bool add_lines(source *s, const char *at, int file) {
-    append_line_mark(s, 1, file);
-    for (int line = 1; *at; ++line) {
+    bool ok = begin_span(s, file, 1);
+    for (int line = 1; *at && ok; ++line) {
         const char *end = strchr(at, '\n');
         size_t length = end ? (size_t)(end - at) + 1 : strlen(at);
         char name[GFX_SHADER_PATH];
-        if (include_name(at, name, sizeof name)) {
-            if (!add_file(s, name)) {
-                return core_fail_quiet("%s:%d: %s", s->file[file], line, core_last_error());
-            }
-            append_line_mark(s, line + 1, file);
-        } else {
-            append(&s->out, at, length);
+        if (!include_name(at, name, sizeof name)) {
+            append_line(s, at, length);
+        } else if (!add_file(s, name) || !begin_span(s, file, line + 1)) {
+            ok = core_fail_quiet("%s:%d: %s", s->file[file], line, core_last_error());
         }
         at += length;
     }
-    append(&s->out, "\n", 1);
-    return true;
+    return ok;
 }
 
 // Each file enters once, so headers need no guards and cycles end.
@@ -108,43 +125,48 @@ static void add_head(source *s, uint32_t features) {
 #define NAME_(id, name) name,
     static const char *const names[] = {GFX_FEATURES(NAME_)};
 #undef NAME_
-    static const char version[] = "#version 450 core\n"
-                                  "#extension GL_ARB_shader_draw_parameters : enable\n";
-    append(&s->out, version, sizeof version - 1);
+    static const char version[] = "#version 450 core";
+    static const char draw[] = "#extension GL_ARB_shader_draw_parameters : enable";
+    append_line(s, version, sizeof version - 1);
+    append_line(s, draw, sizeof draw - 1);
     for (int i = 0; i < GFX_FEATURE_COUNT; ++i) {
         if (features >> i & 1u) {
             char line[64];
-            int n = snprintf(line, sizeof line, "#define %s 1\n", names[i]);
-            append(&s->out, line, (size_t)n);
+            int n = snprintf(line, sizeof line, "#define %s 1", names[i]);
+            append_line(s, line, (size_t)n);
         }
     }
 }
 
 // ---- errors ----
 
-// Rewrites the first line of a driver's log: Mesa and Intel write "FILE:LINE(COLUMN): why", NVIDIA
-// "FILE(LINE) : why", others with "ERROR: " before.
+// Rewrites the first line of a driver's log: Mesa and Intel write "0:LINE(COLUMN): why", NVIDIA
+// "0(LINE) : why", others with "ERROR: " before.
 static void fail_with_log(const source *s, const char *log) {
     const char *at = log;
     while (*at && !isdigit((unsigned char)*at)) {
         ++at;
     }
-    int file = -1, line = 0, used = 0;
-    if (sscanf(at, "%d:%d%n", &file, &line, &used) < 2 &&
-        sscanf(at, "%d(%d)%n", &file, &line, &used) < 2) {
-        file = -1;
+    int number = 0, line = 0, used = 0, at_span = -1;
+    if (sscanf(at, "%d:%d%n", &number, &line, &used) == 2 ||
+        sscanf(at, "%d(%d)%n", &number, &line, &used) == 2) {
+        while (at_span + 1 < s->spans && s->span[at_span + 1].first <= line) {
+            at_span++;
+        }
     }
-    if (file < 0 || file >= s->files) {
+    if (at_span < 0) {
         core_fail("shader %s: %s", s->file[0], log);
         return;
     }
+    const span *in = &s->span[at_span];
     const char *why = at + used;
     if (*why == '(') { // column
         const char *close = strchr(why, ')');
         why = close ? close + 1 : why;
     }
     why += strspn(why, ": ");
-    core_fail("shaders/%s:%d: %.*s", s->file[file], line, (int)strcspn(why, "\n"), why);
+    core_fail("shaders/%s:%d: %.*s", s->file[in->file], in->line + line - in->first,
+              (int)strcspn(why, "\n"), why);
 }
 
 static GLuint compile(core_vfs *vfs, GLenum stage, const char *name, uint32_t features,
@@ -262,8 +284,8 @@ GLuint gfx_shaders_compute(gfx_shaders *shaders, const char *compute, uint32_t f
     return get(shaders, &want);
 }
 
-uint32_t gfx_shaders_reload(gfx_shaders *shaders) {
-    uint32_t rebuilt = 0;
+bool gfx_shaders_reload(gfx_shaders *shaders) {
+    bool ok = true;
     for (uint32_t i = 0; i < shaders->count; ++i) {
         gfx_program *p = &shaders->program[i];
         if (stamp_of(shaders->vfs, p) == p->stamp) {
@@ -273,10 +295,10 @@ uint32_t gfx_shaders_reload(gfx_shaders *shaders) {
         if (name) {
             glDeleteProgram(p->name);
             p->name = name;
-            rebuilt++;
         }
+        ok = ok && name;
     }
-    return rebuilt;
+    return ok;
 }
 
 void gfx_shaders_release(gfx_shaders *shaders) {

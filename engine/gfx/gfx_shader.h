@@ -41,8 +41,8 @@ void gfx_shaders_release(gfx_shaders *shaders);
 GLuint gfx_shaders_get(gfx_shaders *shaders, const char *vertex, const char *fragment,
                        uint32_t features);
 GLuint gfx_shaders_compute(gfx_shaders *shaders, const char *compute, uint32_t features);
-// Builds again what was made from files that changed since; a program that fails keeps its old
-// form. Returns how many were rebuilt.
-uint32_t gfx_shaders_reload(gfx_shaders *shaders);
+// Builds again what was made from files that changed since; false + core_fail when a program fails,
+// which then keeps its old form.
+bool gfx_shaders_reload(gfx_shaders *shaders);
 
 #endif
