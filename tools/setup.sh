@@ -3,7 +3,7 @@
 #
 #   tools/setup.sh build       compiler and libraries; writes their flags for make, build/packages.mk
 #   tools/setup.sh gen         GL and EGL loaders (glad2), Unity test framework; writes build/gen
-#   tools/setup.sh GROUP...    as build, and what only some targets need: window, clang, lint, valgrind
+#   tools/setup.sh GROUP...    as build, and what only some targets need: window, clang, lint
 #
 # Missing packages are installed by apt on Debian and Ubuntu, by sudo when not root. Elsewhere, or
 # where that is not possible, the names are printed and the exit code is 5.
@@ -59,8 +59,7 @@ clang cmd:clang clang
 clang clangrt: libclang-rt-dev
 lint cmd:g++ g++
 lint cmd:clang-format clang-format
-lint cmd:luacheck lua-check
-valgrind cmd:valgrind valgrind"
+lint cmd:luacheck lua-check"
 
 # A file that matches one of the globs; libraries also stand in folders named by architecture.
 file_exists() {
@@ -267,9 +266,9 @@ gen)
     loaders
     unity
     ;;
-window | clang | lint | valgrind) install_missing build "$@" ;;
+window | clang | lint) install_missing build "$@" ;;
 *)
-    say "unknown group $1; known: build gen window clang lint valgrind"
+    say "unknown group $1; known: build gen window clang lint"
     exit 2
     ;;
 esac
