@@ -1,0 +1,192 @@
+// Private to the room: resources, columns of state, and the passes over them.
+#ifndef ANIM_INTERNAL_H
+#define ANIM_INTERNAL_H
+
+#include "anim/anim.h"
+#include "core/memory.h"
+
+#define ANIM_COOKIE 0x616e696du // "anim"
+
+// A local pose as columns: component c of bone b is at value[c * stride + b]; stride is the bone
+// count padded to CORE_LANES.
+enum { ANIM_TX, ANIM_TY, ANIM_TZ, ANIM_RX, ANIM_RY, ANIM_RZ, ANIM_RW, ANIM_SX, ANIM_SY, ANIM_SZ };
+#define ANIM_COMPONENTS 10u
+
+typedef struct anim_skeleton_res {
+    uint32_t bones, stride;
+    char (*name)[CORE_NAME_MAX];
+    int32_t *parent;
+    float *bind;         // [ANIM_COMPONENTS * stride]
+    float *inverse_bind; // [bones * 12] rows of 3x4
+    uint32_t users;      // clips and instances
+    // Palette places given back by destroyed instances, last in first out.
+    uint32_t *free_place;
+    uint32_t free_count, free_capacity;
+} anim_skeleton_res;
+
+typedef struct anim_clip_res {
+    char name[CORE_NAME_MAX];
+    float duration;
+    anim_skeleton skeleton;
+    uint32_t bones, track_count;
+    core_clip_track *track;
+    core_key *key;
+    int32_t *track_of_bone; // [bones] -1 none
+    anim_clip_event *event; // ascending time
+    uint32_t event_count;
+    bool root_motion;
+    uint32_t root_bone;
+    // Root motion in the frame of the root's parent and of the model: see root_motion.c.
+    float root_remove[9], root_report[9];
+    uint32_t users; // states and players
+} anim_clip_res;
+
+typedef struct anim_state {
+    char name[CORE_NAME_MAX];
+    anim_clip clip;
+    anim_loop loop;
+    float speed;
+    anim_state_fn *on_enter, *on_exit;
+    anim_tick_fn *on_tick;
+    anim_speed_fn *speed_fn;
+    void *ctx;
+} anim_state;
+
+typedef struct anim_transition {
+    int32_t from, to; // from -1: any state but `to`
+    anim_when when;
+    anim_condition_fn *condition;
+    void *ctx;
+    uint32_t event, parameter; // numbers in the machine
+    anim_compare compare;
+    float value, length;
+    anim_fade fade;
+    bool uninterruptible, sync;
+} anim_transition;
+
+typedef struct anim_machine_res {
+    anim_skeleton skeleton;
+    anim_state *state;
+    anim_transition *transition;
+    uint32_t state_count, transition_count, initial;
+    char event[ANIM_MAX_EVENTS][CORE_NAME_MAX];
+    char parameter[ANIM_MAX_PARAMETERS][CORE_NAME_MAX];
+    float start_value[ANIM_MAX_PARAMETERS];
+    uint32_t event_count, parameter_count;
+    uint32_t users;
+} anim_machine_res;
+
+// What plays: a state of the player's machine (state >= 0) or a clip by itself.
+typedef struct anim_slot {
+    core_handle clip; // of the state too, so that sampling need not look it up
+    int32_t state;
+    uint32_t loop;   // anim_loop
+    float time;      // seconds into the clip; ping-pong runs to twice the duration
+    uint32_t unused; // keeps the bytes of the struct defined for hashing
+} anim_slot;
+
+typedef struct anim_values {
+    float v[ANIM_MAX_PARAMETERS];
+} anim_values;
+
+enum { ANIM_FADING = 1, ANIM_SMOOTH = 2, ANIM_LOCKED = 4 };
+#define ANIM_PLAYER_COLUMNS(X)                                                                     \
+    X(core_handle, machine, CORE_COLUMN_STATE)                                                     \
+    X(anim_slot, now, CORE_COLUMN_STATE)        /* current state: the target of a running fade */  \
+    X(anim_slot, from, CORE_COLUMN_STATE)       /* the state being left */                         \
+    X(core_handle, snapshot, CORE_COLUMN_STATE) /* frozen pose instead of `from` */                \
+    X(float, fade_time, CORE_COLUMN_STATE)                                                         \
+    X(float, fade_length, CORE_COLUMN_STATE)                                                       \
+    X(uint32_t, flags, CORE_COLUMN_STATE)                                                          \
+    X(uint32_t, events, CORE_COLUMN_STATE) /* bit per event name sent since the last update */     \
+    X(anim_values, parameter, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(anim_players, ANIM_PLAYER_COLUMNS)
+
+enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
+#define ANIM_INSTANCE_COLUMNS(X)                                                                   \
+    X(core_handle, skeleton, CORE_COLUMN_STATE)                                                    \
+    X(core_handle, player, CORE_COLUMN_STATE)                                                      \
+    X(float, speed, CORE_COLUMN_STATE)                                                             \
+    X(float, root_x, CORE_COLUMN_STATE)                                                            \
+    X(float, root_y, CORE_COLUMN_STATE)                                                            \
+    X(float, root_z, CORE_COLUMN_STATE)                                                            \
+    X(uint32_t, flags, CORE_COLUMN_STATE)                                                          \
+    X(uint64_t, user, 0)                                                                           \
+    X(uint32_t, place, 0) /* first bone in the palette range */                                    \
+    X(uint32_t, posed, 0) /* palette holds a pose */
+CORE_COLUMNS_DECLARE(anim_instances, ANIM_INSTANCE_COLUMNS)
+
+// Frozen poses, 16 bones a row, linked: pose columns of record for interrupted fades.
+typedef struct anim_chunk {
+    float value[ANIM_COMPONENTS][CORE_LANES];
+} anim_chunk;
+#define ANIM_CHUNK_COLUMNS(X)                                                                      \
+    X(core_handle, next, CORE_COLUMN_STATE)                                                        \
+    X(anim_chunk, pose, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(anim_chunks, ANIM_CHUNK_COLUMNS)
+
+// Resources by handle; the rows hold pointers.
+#define ANIM_RESOURCE_COLUMNS(X) X(void *, item, 0)
+CORE_COLUMNS_DECLARE(anim_resources, ANIM_RESOURCE_COLUMNS)
+
+struct anim_world {
+    core_jobs *jobs;
+    core_metrics *metrics;
+    anim_resources skeletons, clips, machines;
+    anim_instances instances;
+    anim_players players;
+    anim_chunks chunks;
+    float *palette; // [max_bones * 12] reserved
+    uint32_t max_bones, bones_placed, bones_committed, bones_live;
+    core_arena scratch[CORE_JOBS_MAX_THREADS]; // one a worker, made when first used
+    uint32_t scratch_count;
+    anim_event *event;
+    uint32_t event_count, event_capacity;
+    bool updating;
+};
+
+// NULL + core_fail for stale handles, naming the kind.
+anim_skeleton_res *anim_get_skeleton(const anim_world *w, anim_skeleton h);
+anim_clip_res *anim_get_clip(const anim_world *w, anim_clip h);
+anim_machine_res *anim_get_machine(const anim_world *w, anim_machine h);
+// Row of a live instance or CORE_NO_ROW + core_fail.
+uint32_t anim_get_instance(const anim_world *w, anim_instance h);
+core_handle anim_resource_add(anim_resources *set, void *item);
+core_arena *anim_scratch(anim_world *w, uint32_t worker);
+float *anim_scratch_pose(core_arena *arena, const anim_skeleton_res *s);
+
+// Nearest of `count` names that begin `stride` bytes apart, for error lines; "" when none is near.
+const char *anim_nearest(const char *name, const void *names, size_t stride, uint32_t count);
+
+// ---- poses as columns ----
+void anim_columns_from_pose(anim_pose in, uint32_t bones, uint32_t stride, float *out);
+void anim_columns_to_pose(const float *in, uint32_t bones, uint32_t stride, anim_pose out);
+void anim_columns_blend(const float *a, const float *b, float alpha, uint32_t stride, float *out);
+// Model matrices (rows of 3x4, [bones * 12]) and palette of a column pose.
+void anim_columns_to_model(const anim_skeleton_res *s, const float *pose, float *model);
+void anim_model_palette(const anim_skeleton_res *s, const float *model, float *palette);
+void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c, float time,
+                              float *out);
+// The pose of an instance's present state.
+void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out);
+
+core_handle anim_snapshot_take(anim_world *w, const anim_skeleton_res *s, const float *pose);
+void anim_snapshot_read(const anim_world *w, core_handle h, const anim_skeleton_res *s, float *out);
+void anim_snapshot_drop(anim_world *w, core_handle h);
+
+// ---- time ----
+float anim_slot_clip_time(const anim_clip_res *c, const anim_slot *slot);
+float anim_fade_weight(const anim_world *w, uint32_t player);
+void anim_root_prepare(const anim_skeleton_res *s, anim_clip_res *c, bool vertical);
+void anim_root_pin(const anim_clip_res *c, uint32_t stride, float *pose);
+// Displacement of the root between two clip times, model space.
+core_vec3 anim_root_between(const anim_clip_res *c, float t0, float t1);
+core_vec3 anim_root_translation(const anim_clip_res *c, float time);
+core_key anim_track_sample(const core_clip_track *t, float time);
+
+// Starts a fade of player `p` (row) to `to`; see the callback order in anim.h.
+void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, float length,
+                       anim_fade fade, bool locked);
+void anim_instance_remove(anim_world *w, uint32_t row);
+
+#endif

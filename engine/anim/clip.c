@@ -1,0 +1,272 @@
+// Clips of raw keys: checked and copied at creation, sampled without state.
+#include "anim/anim_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+anim_clip_desc anim_clip_desc_default(void) { return (anim_clip_desc){.cookie = ANIM_COOKIE}; }
+
+static bool check_key(const core_clip_data *d, const core_clip_track *t, uint32_t k) {
+    const core_key *key = &t->key[k];
+    const float *v = &key->time;
+    for (size_t i = 0; i < sizeof *key / sizeof(float); i++) {
+        if (!isfinite(v[i])) {
+            return core_fail("clip %s: bone %u: key %u has a number that is not finite", d->name,
+                             t->bone, k);
+        }
+    }
+    core_quat q = key->rotation;
+    if (!(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w > 1e-12f)) {
+        return core_fail("clip %s: bone %u: key %u has a zero rotation", d->name, t->bone, k);
+    }
+    if (key->time < 0 || (k > 0 && !(key->time > t->key[k - 1].time))) {
+        return core_fail("clip %s: bone %u: key %u at %g s; times must be >= 0 and grow", d->name,
+                         t->bone, k, key->time);
+    }
+    return true;
+}
+
+static bool check_tracks(const core_clip_data *d) {
+    for (uint32_t i = 0; i < d->track_count; i++) {
+        const core_clip_track *t = &d->track[i];
+        if (t->bone >= d->bone_count || (i > 0 && t->bone <= d->track[i - 1].bone) ||
+            t->key_count == 0) {
+            return core_fail("clip %s: track %u is for bone %u with %u keys; expected ascending "
+                             "bones below %u with keys",
+                             d->name, i, t->bone, t->key_count, d->bone_count);
+        }
+        for (uint32_t k = 0; k < t->key_count; k++) {
+            if (!check_key(d, t, k)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+static bool check_events(const anim_clip_desc *desc) {
+    for (uint32_t i = 0; i < desc->event_count; i++) {
+        const anim_clip_event *e = &desc->event[i];
+        if (!(e->time >= 0 && e->time <= desc->data->duration) ||
+            !memchr(e->name, 0, sizeof e->name)) {
+            return core_fail(
+                "clip %s: event %u at %g s; expected 0..%g s and a name of at most %zu "
+                "bytes",
+                desc->data->name, i, e->time, desc->data->duration, sizeof e->name - 1);
+        }
+    }
+    return true;
+}
+
+static bool check(const anim_clip_desc *desc, const anim_skeleton_res *s) {
+    const core_clip_data *d = desc->data;
+    if (!memchr(d->name, 0, CORE_NAME_MAX)) {
+        return core_fail("clip: its name has no end within %d bytes", CORE_NAME_MAX);
+    }
+    if (!isfinite(d->duration) || !(d->duration > 0)) {
+        return core_fail("clip %s: duration %g s, expected > 0", d->name, d->duration);
+    }
+    if (d->bone_count != s->bones) {
+        return core_fail(
+            "clip %s was made for %u bones, the skeleton has %u; convert both from the "
+            "same file",
+            d->name, d->bone_count, s->bones);
+    }
+    if (desc->root_motion && desc->root_bone >= s->bones) {
+        return core_fail("clip %s: root bone %u, the skeleton has %u", d->name, desc->root_bone,
+                         s->bones);
+    }
+    return check_tracks(d) && check_events(desc);
+}
+
+static int compare_events(const void *a, const void *b) {
+    const anim_clip_event *x = a, *y = b;
+    if (x->time != y->time) {
+        return x->time < y->time ? -1 : 1;
+    }
+    return strcmp(x->name, y->name);
+}
+
+static anim_clip_res *copy_clip(const anim_clip_desc *desc) {
+    const core_clip_data *d = desc->data;
+    size_t keys = 0;
+    for (uint32_t i = 0; i < d->track_count; i++) {
+        keys += d->track[i].key_count;
+    }
+    size_t size = sizeof(anim_clip_res) + d->track_count * sizeof(core_clip_track) +
+                  keys * sizeof(core_key) + d->bone_count * sizeof(int32_t) +
+                  desc->event_count * sizeof(anim_clip_event);
+    anim_clip_res *c = core_alloc(size);
+    c->track = (core_clip_track *)(c + 1);
+    c->key = (core_key *)(c->track + d->track_count);
+    c->track_of_bone = (int32_t *)(c->key + keys);
+    c->event = (anim_clip_event *)(c->track_of_bone + d->bone_count);
+    memcpy(c->name, d->name, CORE_NAME_MAX);
+    c->duration = d->duration;
+    c->skeleton = desc->skeleton;
+    c->bones = d->bone_count;
+    c->track_count = d->track_count;
+    c->event_count = desc->event_count;
+    if (desc->event_count) {
+        memcpy(c->event, desc->event, desc->event_count * sizeof *desc->event);
+        qsort(c->event, c->event_count, sizeof *c->event, compare_events);
+    }
+    return c;
+}
+
+static void copy_tracks(anim_clip_res *c, const core_clip_data *d) {
+    for (uint32_t b = 0; b < c->bones; b++) {
+        c->track_of_bone[b] = -1;
+    }
+    core_key *key = c->key;
+    for (uint32_t i = 0; i < d->track_count; i++) {
+        c->track[i] = d->track[i];
+        c->track[i].key = key;
+        c->track_of_bone[d->track[i].bone] = (int32_t)i;
+        for (uint32_t k = 0; k < d->track[i].key_count; k++, key++) {
+            *key = d->track[i].key[k];
+            key->rotation = core_quat_normalize(key->rotation);
+        }
+    }
+}
+
+anim_clip anim_clip_create(anim_world *w, const anim_clip_desc *desc) {
+    if (!desc || desc->cookie != ANIM_COOKIE || !desc->data) {
+        core_fail("anim_clip_create: the description was not made by anim_clip_desc_default(), or "
+                  "has no data");
+        return CORE_NULL_HANDLE;
+    }
+    anim_skeleton_res *s = anim_get_skeleton(w, desc->skeleton);
+    if (!s || !check(desc, s)) {
+        return CORE_NULL_HANDLE;
+    }
+    anim_clip_res *c = copy_clip(desc);
+    copy_tracks(c, desc->data);
+    if (desc->root_motion) {
+        c->root_motion = true;
+        c->root_bone = desc->root_bone;
+        anim_root_prepare(s, c, desc->root_vertical);
+    }
+    core_handle h = anim_resource_add(&w->clips, c);
+    if (core_handle_is_null(h)) {
+        core_free(c);
+        return h;
+    }
+    s->users++;
+    return h;
+}
+
+bool anim_clip_destroy(anim_world *w, anim_clip h) {
+    anim_clip_res *c = anim_get_clip(w, h);
+    if (!c) {
+        return false;
+    }
+    if (c->users) {
+        return core_fail("clip %s: %u states and instances still use it; destroy them first",
+                         c->name, c->users);
+    }
+    anim_get_skeleton(w, c->skeleton)->users--;
+    core_free(c);
+    return core_columns_remove(&w->clips.set, h, NULL, NULL);
+}
+
+const char *anim_clip_name(const anim_world *w, anim_clip h) {
+    const anim_clip_res *c = anim_get_clip(w, h);
+    return c ? c->name : "";
+}
+
+float anim_clip_duration(const anim_world *w, anim_clip h) {
+    const anim_clip_res *c = anim_get_clip(w, h);
+    return c ? c->duration : 0;
+}
+
+anim_clip anim_clip_find(const anim_world *w, anim_skeleton skeleton, const char *name) {
+    for (uint32_t row = 0; row < core_columns_count(&w->clips.set); row++) {
+        const anim_clip_res *c = w->clips.item[row];
+        if (core_handle_equal(c->skeleton, skeleton) && strcmp(c->name, name) == 0) {
+            return core_columns_handle(&w->clips.set, row);
+        }
+    }
+    return CORE_NULL_HANDLE;
+}
+
+const core_key *anim_clip_keys(const anim_world *w, anim_clip h, uint32_t bone, uint32_t *count) {
+    const anim_clip_res *c = anim_get_clip(w, h);
+    *count = 0;
+    if (!c || bone >= c->bones || c->track_of_bone[bone] < 0) {
+        return NULL;
+    }
+    const core_clip_track *t = &c->track[c->track_of_bone[bone]];
+    *count = t->key_count;
+    return t->key;
+}
+
+core_key anim_key_interpolate(const core_key *a, const core_key *b, float alpha) {
+    core_key out;
+    float left = 1 - alpha; // both ends are exact: a * 1 + b * 0
+    out.time = a->time * left + b->time * alpha;
+    out.translation = core_v3_mad(core_v3_scale(a->translation, left), b->translation, alpha);
+    out.scale = core_v3_mad(core_v3_scale(a->scale, left), b->scale, alpha);
+    out.rotation = core_quat_slerp(a->rotation, b->rotation, alpha);
+    return out;
+}
+
+core_key anim_track_sample(const core_clip_track *t, float time) {
+    const core_key *key = t->key;
+    uint32_t low = 0, high = t->key_count - 1;
+    if (!(time > key[0].time)) {
+        return key[0];
+    }
+    if (time >= key[high].time) {
+        return key[high];
+    }
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (key[middle].time <= time) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    float alpha = (time - key[low].time) / (key[high].time - key[low].time);
+    return anim_key_interpolate(&key[low], &key[high], alpha);
+}
+
+void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c, float time,
+                              float *out) {
+    memcpy(out, s->bind, ANIM_COMPONENTS * s->stride * sizeof(float));
+    for (uint32_t i = 0; i < c->track_count; i++) {
+        core_key k = anim_track_sample(&c->track[i], time);
+        float *v = out + c->track[i].bone;
+        const uint32_t n = s->stride;
+        v[ANIM_TX * n] = k.translation.x;
+        v[ANIM_TY * n] = k.translation.y;
+        v[ANIM_TZ * n] = k.translation.z;
+        v[ANIM_RX * n] = k.rotation.x;
+        v[ANIM_RY * n] = k.rotation.y;
+        v[ANIM_RZ * n] = k.rotation.z;
+        v[ANIM_RW * n] = k.rotation.w;
+        v[ANIM_SX * n] = k.scale.x;
+        v[ANIM_SY * n] = k.scale.y;
+        v[ANIM_SZ * n] = k.scale.z;
+    }
+    if (c->root_motion) {
+        anim_root_pin(c, s->stride, out);
+    }
+}
+
+bool anim_clip_sample(const anim_world *w, anim_clip h, float time, anim_pose out) {
+    const anim_clip_res *c = anim_get_clip(w, h);
+    if (!c) {
+        return false;
+    }
+    const anim_skeleton_res *s = anim_get_skeleton(w, c->skeleton);
+    core_arena *arena = anim_scratch((anim_world *)w, 0);
+    size_t mark = core_arena_mark(arena);
+    float *columns = anim_scratch_pose(arena, s);
+    anim_clip_sample_columns(s, c, isfinite(time) ? time : 0, columns);
+    anim_columns_to_pose(columns, s->bones, s->stride, out);
+    core_arena_rewind(arena, mark);
+    return true;
+}

@@ -1,0 +1,380 @@
+// The state pass: time, fades, transitions and callbacks, instance by instance in row order. Any
+// callback may change the instance, so columns are read again after each.
+#include "anim/anim_internal.h"
+
+#include <math.h>
+
+static anim_instance handle_of(const anim_world *w, uint32_t row) {
+    return core_columns_handle(&w->instances.set, row);
+}
+static bool doomed(const anim_world *w, uint32_t row) {
+    return (w->instances.flags[row] & ANIM_DOOMED) != 0;
+}
+static uint32_t player_of(const anim_world *w, uint32_t row) {
+    return core_columns_row(&w->players.set, w->instances.player[row]);
+}
+// NULL for slots that play a clip by itself.
+static const anim_state *state_of(const anim_world *w, uint32_t p, const anim_slot *slot) {
+    return slot->state < 0 ? NULL : &anim_get_machine(w, w->players.machine[p])->state[slot->state];
+}
+
+// Length of one period of the slot's own time.
+static float period(const anim_clip_res *c, uint32_t loop) {
+    return loop == ANIM_PING_PONG ? 2 * c->duration : c->duration;
+}
+
+float anim_slot_clip_time(const anim_clip_res *c, const anim_slot *slot) {
+    float t = slot->time;
+    if (slot->loop != ANIM_ONCE) {
+        float d = period(c, slot->loop);
+        if (!(t >= 0 && t <= d)) {
+            t = (float)core_fmod(t, d);
+            t = t < 0 ? t + d : t;
+        }
+        t = slot->loop == ANIM_PING_PONG && t > c->duration ? d - t : t;
+    }
+    return CORE_CLAMP(t, 0.0f, c->duration);
+}
+
+float anim_fade_weight(const anim_world *w, uint32_t p) {
+    if (!(w->players.flags[p] & ANIM_FADING)) {
+        return 1;
+    }
+    float s = CORE_CLAMP(w->players.fade_time[p] / w->players.fade_length[p], 0.0f, 1.0f);
+    return w->players.flags[p] & ANIM_SMOOTH ? s * s * (3 - 2 * s) : s;
+}
+
+static void add_event(anim_world *w, uint32_t row, core_handle clip, const anim_clip_event *e) {
+    if (w->event_count == w->event_capacity) {
+        uint32_t capacity = w->event_capacity ? w->event_capacity * 2 : 64;
+        w->event = core_realloc(w->event, w->event_capacity * sizeof *w->event,
+                                capacity * sizeof *w->event);
+        w->event_capacity = capacity;
+    }
+    w->event[w->event_count++] = (anim_event){handle_of(w, row), clip, e->name, e->time};
+}
+
+// Events passed while the clip's own time runs from a to b without wrapping: [a, b) forwards, (b,
+// a] backwards, with the end of the clip when it is reached.
+static void events_between(anim_world *w, uint32_t row, core_handle clip, const anim_clip_res *c,
+                           float a, float b) {
+    for (uint32_t i = 0; i < c->event_count; i++) {
+        const anim_clip_event *e = &c->event[b >= a ? i : c->event_count - 1 - i];
+        bool forwards =
+            a < b && e->time >= a && (e->time < b || (b == c->duration && e->time == b));
+        bool backwards = a > b && e->time <= a && (e->time > b || (b == 0 && e->time == 0));
+        if (forwards || backwards) {
+            add_event(w, row, clip, e);
+        }
+    }
+}
+
+typedef struct slot_step {
+    bool wrapped;   // an end of the clip was passed
+    core_vec3 root; // displacement
+    float rate;     // clip seconds a second
+} slot_step;
+
+// One straight piece of a step in slot time, where the clip's time runs one way.
+static void piece(anim_world *w, uint32_t row, const anim_slot *slot, const anim_clip_res *c,
+                  float a, float b, slot_step *out) {
+    bool mirrored = slot->loop == ANIM_PING_PONG && (a + b) * 0.5f > c->duration;
+    float d = 2 * c->duration;
+    float ta = mirrored ? d - a : a, tb = mirrored ? d - b : b;
+    events_between(w, row, slot->clip, c, ta, tb);
+    if (c->root_motion) {
+        out->root = core_v3_add(out->root, anim_root_between(c, ta, tb));
+    }
+}
+
+// The next place where a straight piece ends.
+static float piece_end(const anim_clip_res *c, uint32_t loop, float t, bool forwards) {
+    float d = c->duration;
+    if (loop == ANIM_PING_PONG) {
+        return forwards ? (t < d ? d : 2 * d) : (t > d ? d : 0);
+    }
+    return forwards ? d : 0;
+}
+
+// Whole periods in one step cost no loop over them unless events or root motion ask for it.
+#define MAX_PIECES 256
+
+static void advance_time(anim_world *w, uint32_t row, anim_slot *slot, const anim_clip_res *c,
+                         float delta, slot_step *out) {
+    float p = period(c, slot->loop), t = slot->time;
+    if (slot->loop == ANIM_ONCE) {
+        float end = CORE_CLAMP(t + delta, 0.0f, c->duration);
+        float start = CORE_CLAMP(t, 0.0f, c->duration);
+        piece(w, row, slot, c, start, end, out);
+        out->wrapped = t + delta >= c->duration || (delta < 0 && t + delta <= 0);
+        slot->time = end;
+        return;
+    }
+    if (!(t >= 0 && t <= p)) {
+        t = (float)core_fmod(t, p);
+        t = t < 0 ? t + p : t;
+    }
+    bool forwards = delta >= 0;
+    for (int i = 0; delta != 0 && i < MAX_PIECES; i++) {
+        if (forwards ? t >= p : t <= 0) {
+            t = forwards ? 0 : p;
+        }
+        float end = piece_end(c, slot->loop, t, forwards);
+        float next = t + delta;
+        if (forwards ? next < end : next > end) {
+            piece(w, row, slot, c, t, next, out);
+            t = next;
+            delta = 0;
+        } else {
+            piece(w, row, slot, c, t, end, out);
+            delta -= end - t;
+            t = end;
+            out->wrapped = out->wrapped || t >= p || t <= 0;
+        }
+    }
+    if (delta != 0) { // a step of very many periods: keep the phase
+        t = (float)core_fmod((double)t + delta, p);
+        t = t < 0 ? t + p : t;
+    }
+    slot->time = t;
+}
+
+static slot_step advance(anim_world *w, uint32_t row, uint32_t p, bool leaving, float dt) {
+    anim_slot *slot = leaving ? &w->players.from[p] : &w->players.now[p];
+    slot_step out = {0};
+    if (core_handle_is_null(slot->clip)) {
+        return out;
+    }
+    const anim_clip_res *c = anim_get_clip(w, slot->clip);
+    const anim_state *s = state_of(w, p, slot);
+    float rate = w->instances.speed[row];
+    if (s) {
+        rate *= s->speed;
+        if (s->speed_fn) {
+            float phase = anim_slot_clip_time(c, slot) / c->duration;
+            float factor = s->speed_fn(s->ctx, w, handle_of(w, row), phase);
+            rate *= isfinite(factor) ? factor : 1;
+        }
+    }
+    out.rate = rate;
+    if (!doomed(w, row)) {
+        advance_time(w, row, slot, c, dt * rate, &out);
+    }
+    return out;
+}
+
+static void call(anim_world *w, uint32_t row, anim_state_fn *fn, void *ctx) {
+    if (fn && !doomed(w, row)) {
+        fn(ctx, w, handle_of(w, row));
+    }
+}
+
+static void set_slot(anim_world *w, anim_slot *slot, anim_slot value) {
+    if (!core_handle_is_null(value.clip)) {
+        anim_get_clip(w, value.clip)->users++;
+    }
+    if (!core_handle_is_null(slot->clip)) {
+        anim_get_clip(w, slot->clip)->users--;
+    }
+    *slot = value;
+}
+
+static void exit_from(anim_world *w, uint32_t row, uint32_t p) {
+    const anim_state *left = state_of(w, p, &w->players.from[p]);
+    set_slot(w, &w->players.from[p], (anim_slot){.state = -1});
+    anim_snapshot_drop(w, w->players.snapshot[p]);
+    w->players.snapshot[p] = CORE_NULL_HANDLE;
+    w->players.flags[p] = 0;
+    if (left) {
+        call(w, row, left->on_exit, left->ctx);
+    }
+}
+
+static core_handle freeze(anim_world *w, uint32_t row) {
+    const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
+    core_arena *arena = anim_scratch(w, 0);
+    size_t mark = core_arena_mark(arena);
+    float *pose = anim_scratch_pose(arena, s);
+    anim_evaluate(w, row, arena, pose);
+    core_handle h = anim_snapshot_take(w, s, pose);
+    core_arena_rewind(arena, mark);
+    return h;
+}
+
+void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, float length,
+                       anim_fade fade, bool locked) {
+    bool interrupts = (w->players.flags[p] & ANIM_FADING) != 0;
+    core_handle snapshot = CORE_NULL_HANDLE;
+    if (interrupts) {
+        snapshot = length > 0 ? freeze(w, row) : CORE_NULL_HANDLE;
+        exit_from(w, row, p);
+    }
+    set_slot(w, &w->players.from[p], w->players.now[p]);
+    set_slot(w, &w->players.now[p], to);
+    w->players.snapshot[p] = snapshot;
+    w->players.fade_time[p] = 0;
+    w->players.fade_length[p] = length;
+    w->players.flags[p] = ANIM_FADING | (fade == ANIM_FADE_SMOOTH ? (uint32_t)ANIM_SMOOTH : 0u) |
+                          (locked ? (uint32_t)ANIM_LOCKED : 0u);
+    if (!(length > 0)) {
+        exit_from(w, row, p);
+    }
+    const anim_state *entered = state_of(w, p, &to);
+    if (entered) {
+        call(w, row, entered->on_enter, entered->ctx);
+    }
+}
+
+static bool compare(float a, anim_compare how, float b) {
+    switch (how) {
+    case ANIM_GREATER:
+        return a > b;
+    case ANIM_LESS:
+        return a < b;
+    case ANIM_GREATER_EQUAL:
+        return a >= b;
+    case ANIM_LESS_EQUAL:
+        return a <= b;
+    case ANIM_EQUAL:
+        return a == b;
+    case ANIM_NOT_EQUAL:
+        return a != b;
+    }
+    return false;
+}
+
+static bool nearly_finished(const anim_world *w, uint32_t p, const slot_step *step, float length) {
+    const anim_slot *now = &w->players.now[p];
+    float end = period(anim_get_clip(w, now->clip), now->loop);
+    float ahead = step->rate * length;
+    bool reaches = step->rate < 0 ? now->time + ahead <= 0 : now->time + ahead >= end;
+    return step->wrapped || reaches;
+}
+
+static bool matches(anim_world *w, uint32_t row, uint32_t p, const anim_transition *t,
+                    const slot_step *step) {
+    switch (t->when) {
+    case ANIM_WHEN_FINISHED:
+        return nearly_finished(w, p, step, t->length);
+    case ANIM_WHEN_CONDITION:
+        return t->condition(t->ctx, w, handle_of(w, row));
+    case ANIM_WHEN_EVENT:
+        return (w->players.events[p] >> t->event & 1u) != 0;
+    case ANIM_WHEN_PARAMETER:
+        return compare(w->players.parameter[p].v[t->parameter], t->compare, t->value);
+    }
+    return false;
+}
+
+// Where the target starts: at its beginning (its end when it plays backwards), or at the phase of
+// the state left.
+static float start_time(const anim_world *w, uint32_t p, const anim_state *to, bool sync) {
+    const anim_clip_res *target = anim_get_clip(w, to->clip);
+    const anim_slot *now = &w->players.now[p];
+    if (!sync || core_handle_is_null(now->clip)) {
+        return to->speed < 0 ? period(target, to->loop) : 0;
+    }
+    const anim_clip_res *source = anim_get_clip(w, now->clip);
+    return now->time / period(source, now->loop) * period(target, to->loop);
+}
+
+static void follow_transitions(anim_world *w, uint32_t row, const slot_step *step) {
+    uint32_t p = player_of(w, row);
+    int32_t state = w->players.now[p].state;
+    if (state < 0 || (w->players.flags[p] & ANIM_LOCKED)) {
+        return;
+    }
+    const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
+    for (uint32_t i = 0; i < m->transition_count; i++) {
+        const anim_transition *t = &m->transition[i];
+        bool applies = t->from == state || (t->from < 0 && t->to != state);
+        if (!applies || !matches(w, row, p, t, step)) {
+            continue;
+        }
+        if (doomed(w, row) || w->players.now[p].state != state) {
+            return; // a condition changed the instance itself
+        }
+        const anim_state *to = &m->state[t->to];
+        anim_slot slot = {.clip = to->clip,
+                          .state = t->to,
+                          .loop = to->loop,
+                          .time = start_time(w, p, to, t->sync)};
+        anim_player_start(w, row, p, slot, t->length, t->fade, t->uninterruptible);
+        return;
+    }
+}
+
+static void add_root(anim_world *w, uint32_t row, core_vec3 d, float weight) {
+    w->instances.root_x[row] += d.x * weight;
+    w->instances.root_y[row] += d.y * weight;
+    w->instances.root_z[row] += d.z * weight;
+}
+
+static void advance_fade(anim_world *w, uint32_t row, uint32_t p, float dt) {
+    w->players.fade_time[p] += dt;
+    if (w->players.fade_time[p] >= w->players.fade_length[p]) {
+        exit_from(w, row, p);
+    }
+}
+
+static void update_instance(anim_world *w, uint32_t row, float dt) {
+    uint32_t p = player_of(w, row);
+    w->instances.root_x[row] = w->instances.root_y[row] = w->instances.root_z[row] = 0;
+    bool fading = (w->players.flags[p] & ANIM_FADING) != 0;
+    slot_step step = advance(w, row, p, false, dt);
+    if (fading && !doomed(w, row)) {
+        slot_step left = {0};
+        if (core_handle_is_null(w->players.snapshot[p])) {
+            left = advance(w, row, p, true, dt);
+        }
+        advance_fade(w, row, p, dt);
+        float weight = anim_fade_weight(w, p);
+        add_root(w, row, left.root, 1 - weight);
+        add_root(w, row, step.root, weight);
+    } else {
+        add_root(w, row, step.root, 1);
+    }
+    if (!doomed(w, row)) {
+        follow_transitions(w, row, &step);
+    }
+    w->players.events[p] = 0;
+    const anim_state *now = state_of(w, p, &w->players.now[p]);
+    if (now && now->on_tick && !doomed(w, row)) {
+        now->on_tick(now->ctx, w, handle_of(w, row), dt);
+    }
+}
+
+static void remove_doomed(anim_world *w) {
+    for (uint32_t row = core_columns_count(&w->instances.set); row > 0; row--) {
+        if (doomed(w, row - 1)) {
+            anim_instance_remove(w, row - 1);
+        }
+    }
+}
+
+bool anim_world_update(anim_world *w, float dt) {
+    if (!isfinite(dt) || dt < 0) {
+        return core_fail("anim_world_update: dt is %g s; expected >= 0", dt);
+    }
+    if (w->updating) {
+        return core_fail("anim_world_update: called from one of its own callbacks");
+    }
+    core_stage_begin(w->metrics, CORE_STAGE_ANIM);
+    w->updating = true;
+    w->event_count = 0;
+    uint32_t count = core_columns_count(&w->instances.set);
+    for (uint32_t row = 0; row < count; row++) {
+        if (!doomed(w, row)) {
+            update_instance(w, row, dt);
+        }
+    }
+    w->updating = false;
+    remove_doomed(w);
+    core_stage_end(w->metrics, CORE_STAGE_ANIM);
+    return true;
+}
+
+uint32_t anim_world_events(const anim_world *w, const anim_event **out) {
+    *out = w->event;
+    return w->event_count;
+}
