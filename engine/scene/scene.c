@@ -14,7 +14,7 @@ CORE_COLUMNS_DEFINE(scene_entities, SCENE_ENTITY_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_names, SCENE_NAME_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_clock, SCENE_CLOCK_COLUMNS)
 
-static const char *const rooms[] = {"phys", "gfx"};
+static const char *const rooms[] = {"scene", "script", "phys", "gfx"};
 
 scene_desc scene_desc_default(void) {
     return (scene_desc){.dt = 1.0f / 60.0f, .max_entities = 1u << 20, .cookie = SCENE_COOKIE};
@@ -189,9 +189,9 @@ bool scene_setting(scene *s, const char *name, const char *value) {
     memcpy(kept.room, name, room_length);
     strcpy(kept.name, dot + 1);
     strcpy(kept.value, value);
-    if (!scene_room_built(kept.room)) {
-        return core_fail("setting '%s': no room '%s'; rooms with settings are phys and gfx", name,
-                         kept.room);
+    if (strcmp(kept.room, "phys") != 0 && strcmp(kept.room, "gfx") != 0) {
+        return core_fail("setting '%s': no settings for '%s'; rooms with settings are phys and gfx",
+                         name, kept.room);
     }
     if (!try_setting(s, kept.room, kept.name, kept.value)) {
         return false;
@@ -280,7 +280,7 @@ uint64_t scene_hash(const scene *s) {
 void scene_describe_row(const scene *s, const core_columns *set, uint32_t row, char *out,
                         size_t size) {
     if (row >= core_columns_count(set)) {
-        snprintf(out, size, "%s row %u", set->name, row);
+        snprintf(out, size, "%s (no single row)", set->name);
         return;
     }
     core_handle h = core_columns_handle(set, row);

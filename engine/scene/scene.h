@@ -54,7 +54,7 @@ core_rng *scene_rng(scene *s, uint64_t stream); // CORE_RNG_SIM, CORE_RNG_VIEW
 // rooms made later. False + core_fail for unknown rooms, names or values.
 bool scene_setting(scene *s, const char *name, const char *value);
 
-// Rooms that this build has: "phys", "gfx", ... false for others.
+// Rooms that this build has: "scene", "script", "phys", "gfx", ... false for others.
 bool scene_room_built(const char *room);
 
 // One fixed step: hooks.fixed, navigation and state machines, physics, hooks.events, poses, audio.
@@ -106,7 +106,8 @@ void scene_sync_draw(scene *s, float alpha);
 // Column sets of all rooms in a fixed order, for hash, save and divergence reports.
 int scene_state(const scene *s, const core_columns **out, int capacity);
 uint64_t scene_hash(const scene *s);
-// "phys.bodies row 12 (entity 'ball', handle 13:1)": names one row of a set that scene_state gave.
+// "phys.bodies row 12 (entity 'ball', handle 13:1)": names one row of a set that scene_state gave;
+// a row beyond the last gives "phys.bodies (no single row)".
 void scene_describe_row(const scene *s, const core_columns *set, uint32_t row, char *out,
                         size_t size);
 // counts, memory by room (bytes) for metrics.

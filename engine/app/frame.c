@@ -1,0 +1,98 @@
+// Drawing: the device, a frame with overlay and error screen, pictures that were asked for.
+#include <stdio.h>
+#include <string.h>
+
+#include "app/run.h"
+#include "core/file.h"
+
+bool app_device_open(app_run *r, bool window) {
+    if (r->device) {
+        return true;
+    }
+    gfx_device_desc desc = gfx_device_desc_default();
+    desc.window = window;
+    desc.width = r->width;
+    desc.height = r->height;
+    desc.title = r->conf.title[0] ? r->conf.title : "corsac";
+    desc.vsync = true;
+    desc.vfs = r->vfs;
+    desc.metrics = r->metrics;
+    r->device = gfx_device_create(&desc);
+    if (!r->device) {
+        return app_fail(r, APP_EXIT_ENVIRONMENT);
+    }
+    snprintf(r->report.device, sizeof r->report.device, "%s", gfx_device_name(r->device));
+    return true;
+}
+
+// Text of the last error, wrapped by hand: lines of a traceback can be longer than the window.
+static void error_screen(const app_run *r, gfx_world *world) {
+    const float back[4] = {0.12f, 0.02f, 0.03f, 0.92f}, ink[4] = {1.0f, 0.92f, 0.88f, 1.0f};
+    const float size = 18.0f;
+    uint32_t width, height;
+    gfx_device_size(r->device, &width, &height);
+    gfx_rect(world, 0, 0, (float)width, (float)height, back);
+    gfx_print(world, 24, 20, size * 1.4f, ink, "The script failed. R: load again   Esc: quit");
+    size_t columns = CORE_MAX((size_t)((float)width - 48.0f) / 9, (size_t)20);
+    float y = 20 + size * 2.6f;
+    for (const char *at = script_last_error(r->script); *at && y < (float)height - size;) {
+        char line[512];
+        size_t length = CORE_MIN(strcspn(at, "\n"), CORE_MIN(columns, sizeof line - 1));
+        memcpy(line, at, length);
+        line[length] = 0;
+        gfx_print(world, 24, y, size, ink, line);
+        y += size * 1.35f;
+        at += length + (at[length] == '\n');
+    }
+}
+
+bool app_frame(app_run *r, float alpha) {
+    gfx_world *world = scene_gfx(r->scene);
+    if (!world) {
+        return app_fail(r, APP_EXIT_ENVIRONMENT);
+    }
+    gfx_world_begin_frame(world);
+    core_stage_begin(r->metrics, CORE_STAGE_SCRIPT);
+    script_draw(r->script);
+    core_stage_end(r->metrics, CORE_STAGE_SCRIPT);
+    scene_sync_draw(r->scene, alpha);
+    if (r->overlay) {
+        scene_counts(r->scene);
+        gfx_overlay(world, r->metrics);
+    }
+    if (!r->opt->headless && script_error_count(r->script)) {
+        error_screen(r, world);
+    }
+    r->report.frames++;
+    return gfx_device_render(r->device, world) || app_fail(r, APP_EXIT_ENVIRONMENT);
+}
+
+static bool shot_due(const app_run *r, const app_shot *shot, uint64_t step) {
+    return step == (shot->step ? shot->step : r->last_step);
+}
+
+bool app_frame_wanted(const app_run *r, uint64_t step) {
+    bool wanted = r->opt->video != NULL;
+    for (uint32_t i = 0; i < r->opt->shot_count; i++) {
+        wanted |= shot_due(r, &r->opt->shot[i], step);
+    }
+    return wanted;
+}
+
+bool app_frame_files(app_run *r, uint64_t step) {
+    char path[APP_PATH_MAX];
+    for (uint32_t i = 0; i < r->opt->shot_count; i++) {
+        const app_shot *shot = &r->opt->shot[i];
+        snprintf(path, sizeof path, "%.*s", (int)shot->path_length, shot->path);
+        if (shot_due(r, shot, step) && !gfx_device_shot(r->device, path)) {
+            return app_fail(r, APP_EXIT_USAGE);
+        }
+    }
+    if (r->opt->video) {
+        snprintf(path, sizeof path, "%s/frame-%06llu.png", r->opt->video, (unsigned long long)step);
+        if (!gfx_device_shot(r->device, path)) {
+            return app_fail(r, APP_EXIT_USAGE);
+        }
+    }
+    return true;
+}

@@ -1,0 +1,94 @@
+// What a script may ask of the program.
+#include <math.h>
+#include <string.h>
+
+#include "app/run.h"
+#include "core/log.h"
+
+static const char *param(void *ctx, const char *name) {
+    app_run *r = ctx;
+    uint32_t i = 0;
+    while (i < r->param_count && strcmp(r->param[i], name) != 0) {
+        i++;
+    }
+    if (i == r->param_count && i < APP_MAX_PARAMS && strlen(name) < sizeof r->param[0]) {
+        strcpy(r->param[r->param_count++], name);
+    }
+    for (i = 0; i < r->start.set_count; i++) {
+        if (strcmp(r->start.set[i].name, name) == 0) {
+            return r->start.set[i].value;
+        }
+    }
+    return NULL;
+}
+
+static void leave(void *ctx, int code) {
+    app_run *r = ctx;
+    r->quit = true;
+    r->exit_code = code & 0xff;
+}
+
+static bool change_scene(void *ctx, const char *path) {
+    app_run *r = ctx;
+    if (strlen(path) >= sizeof r->next_scene) {
+        return core_fail_quiet("corsac.run: path '%.60s...' is too long", path);
+    }
+    if (!core_vfs_exists(r->vfs, path)) {
+        return core_fail_quiet("corsac.run: no file '%s' in the scene's folder", path);
+    }
+    strcpy(r->next_scene, path);
+    return true;
+}
+
+static void user_metric(void *ctx, const char *name, double value) {
+    app_report_user(&((app_run *)ctx)->report, name, value);
+}
+
+static double metric(void *ctx, const char *path, bool *known) {
+    app_run *r = ctx;
+    if (r->sampled_at != r->report.steps && strncmp(path, "accuracy.", 9) == 0) {
+        app_report_sample(&r->report, r->scene);
+        r->sampled_at = r->report.steps;
+    }
+    if (strncmp(path, "counts.", 7) == 0 || strncmp(path, "memory.", 7) == 0) {
+        app_report_finish(&r->report, r->scene, script_bytes(r->script));
+    }
+    return app_report_value(&r->report, path, known);
+}
+
+static void warning(void *ctx, const char *text) {
+    app_text_list_add(&((app_run *)ctx)->report.warnings, text);
+}
+
+static bool input_down(void *ctx, const char *name, bool *known) {
+    return app_input_down(&((app_run *)ctx)->input, name, known);
+}
+
+static float input_axis(void *ctx, const char *name, bool *known) {
+    return app_input_axis(&((app_run *)ctx)->input, name, known);
+}
+
+static void set_pause(void *ctx, bool paused) { ((app_run *)ctx)->paused = paused; }
+
+static void set_time_scale(void *ctx, float scale) {
+    app_run *r = ctx;
+    if (!isfinite(scale) || scale < 0.0f || scale > 100.0f) {
+        core_log(CORE_LOG_WARN, "time scale %g is outside 0..100 and ignored", (double)scale);
+        return;
+    }
+    r->time_scale = scale;
+}
+
+script_host app_host(app_run *r) {
+    return (script_host){.ctx = r,
+                         .param = param,
+                         .exit = leave,
+                         .run = change_scene,
+                         .user_metric = user_metric,
+                         .metric = metric,
+                         .warning = warning,
+                         .input_down = input_down,
+                         .input_axis = input_axis,
+                         .pause = set_pause,
+                         .time_scale = set_time_scale};
+}

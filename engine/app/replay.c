@@ -1,0 +1,267 @@
+// The reading half of journal.h. A recording may come from anybody: the whole file is walked and
+// every length checked against what is left before any of it is used.
+#include <math.h>
+#include <string.h>
+
+#include "app/journal.h"
+#include "app/journal_layout.h"
+#include "core/file.h"
+
+typedef struct cursor {
+    const uint8_t *data;
+    size_t size, at;
+    bool bad;
+} cursor;
+
+struct app_replay {
+    char path[512];
+    uint8_t *data;
+    cursor next; // the next step's block
+    app_journal_header header;
+    uint64_t steps, done;
+    uint16_t *row_hash; // [capacity]
+    uint32_t capacity;
+};
+
+static const void *take(cursor *c, size_t size) {
+    if (c->bad || c->size - c->at < size) {
+        c->bad = true;
+        return NULL;
+    }
+    const void *p = c->data + c->at;
+    c->at += size;
+    return p;
+}
+
+static uint32_t take_u32(cursor *c) {
+    uint32_t value = 0;
+    const void *p = take(c, sizeof value);
+    if (p) {
+        memcpy(&value, p, sizeof value);
+    }
+    return value;
+}
+
+static uint64_t take_u64(cursor *c) {
+    uint64_t value = 0;
+    const void *p = take(c, sizeof value);
+    if (p) {
+        memcpy(&value, p, sizeof value);
+    }
+    return value;
+}
+
+static uint32_t take_count(cursor *c, uint32_t most) {
+    uint32_t count = take_u32(c);
+    c->bad |= count > most;
+    return c->bad ? 0 : count;
+}
+
+static void take_text(cursor *c, char *out, size_t size) {
+    uint32_t length = take_count(c, (uint32_t)size - 1);
+    const void *p = take(c, length);
+    if (p) {
+        memcpy(out, p, length);
+        out[length] = 0;
+        c->bad |= memchr(p, 0, length) != NULL;
+    }
+}
+
+static void take_header(cursor *c, app_journal_header *h) {
+    take_text(c, h->scene, sizeof h->scene);
+    h->seed = take_u64(c);
+    const void *dt = take(c, sizeof h->dt);
+    if (dt) {
+        memcpy(&h->dt, dt, sizeof h->dt);
+        c->bad |= !(h->dt >= 0.0 && h->dt <= 1.0);
+    }
+    h->width = take_count(c, 16384);
+    h->height = take_count(c, 16384);
+    h->headless = take_count(c, 1) != 0;
+    h->set_count = take_count(c, APP_MAX_SETS);
+    for (uint32_t i = 0; i < h->set_count && !c->bad; i++) {
+        take_text(c, h->set[i].name, sizeof h->set[i].name);
+        take_text(c, h->set[i].value, sizeof h->set[i].value);
+    }
+    h->argument_count = take_count(c, CORE_COUNT_OF(h->argument));
+    for (uint32_t i = 0; i < h->argument_count && !c->bad; i++) {
+        take_text(c, h->argument[i], sizeof h->argument[i]);
+    }
+    h->file_count = take_count(c, APP_MAX_FILES);
+    for (uint32_t i = 0; i < h->file_count && !c->bad; i++) {
+        take_text(c, h->file[i].name, sizeof h->file[i].name);
+        h->file[i].hash = take_u64(c);
+    }
+}
+
+typedef struct set_block { // one column set after one step
+    char name[64];
+    uint32_t columns, rows;
+    const uint8_t *column_hash, *row_hash; // unaligned u64s, u16s
+} set_block;
+
+static set_block take_set(cursor *c) {
+    set_block b = {0};
+    take_text(c, b.name, sizeof b.name);
+    b.columns = take_count(c, CORE_COLUMNS_MAX);
+    b.rows = take_u32(c);
+    b.column_hash = take(c, b.columns * sizeof(uint64_t));
+    b.row_hash = take(c, (size_t)b.rows * sizeof(uint16_t));
+    return b;
+}
+
+static bool event_ok(const gfx_event *e) {
+    return (unsigned)e->type <= GFX_EVENT_FOCUS && isfinite(e->x) && isfinite(e->y);
+}
+
+// Steps in the file; every block is walked once.
+static uint64_t walk(cursor *c) {
+    uint64_t steps = 0;
+    for (;;) {
+        uint32_t mark = take_u32(c);
+        if (mark == JOURNAL_DONE) {
+            take_u64(c);
+            c->bad |= c->at != c->size;
+            return steps;
+        }
+        c->bad |= mark != JOURNAL_STEP;
+        uint32_t events = take_count(c, APP_MAX_EVENTS);
+        for (uint32_t i = 0; i < events && !c->bad; i++) {
+            gfx_event e;
+            const void *p = take(c, sizeof e);
+            if (p) {
+                memcpy(&e, p, sizeof e);
+                c->bad |= !event_ok(&e);
+            }
+        }
+        uint32_t sets = take_count(c, JOURNAL_MAX_SETS);
+        for (uint32_t i = 0; i < sets && !c->bad; i++) {
+            take_set(c);
+        }
+        if (c->bad) {
+            return steps;
+        }
+        steps++;
+    }
+}
+
+app_replay *app_replay_open(const char *path) {
+    size_t size;
+    uint8_t *data = core_file_read(path, &size);
+    if (!data) {
+        return NULL;
+    }
+    app_replay *r = core_alloc(sizeof *r);
+    snprintf(r->path, sizeof r->path, "%s", path);
+    r->data = data;
+    cursor c = {.data = data, .size = size};
+    if (take_u32(&c) != JOURNAL_MAGIC) {
+        core_fail("'%s' is no recording of corsac (its first bytes are not CRR1)", path);
+        app_replay_close(r);
+        return NULL;
+    }
+    take_header(&c, &r->header);
+    r->next = c;
+    if (!c.bad) {
+        r->steps = walk(&c);
+    }
+    if (c.bad) {
+        core_fail("recording '%s' is cut or damaged at byte %zu of %zu, after %llu whole steps; "
+                  "record the run again",
+                  path, c.at, size, (unsigned long long)r->steps);
+        app_replay_close(r);
+        return NULL;
+    }
+    return r;
+}
+
+void app_replay_close(app_replay *r) {
+    if (r) {
+        core_free(r->data);
+        core_free(r->row_hash);
+        core_free(r);
+    }
+}
+
+const app_journal_header *app_replay_header(const app_replay *r) { return &r->header; }
+uint64_t app_replay_steps(const app_replay *r) { return r->steps; }
+
+uint32_t app_replay_events(app_replay *r, gfx_event *out) {
+    if (r->done >= r->steps) {
+        return 0;
+    }
+    take_u32(&r->next);
+    uint32_t count = take_count(&r->next, APP_MAX_EVENTS);
+    const void *p = take(&r->next, count * sizeof *out);
+    if (p) {
+        memcpy(out, p, count * sizeof *out);
+    }
+    return count;
+}
+
+// First row whose checksum differs; the count of rows when none does (the file's column hash is
+// then the only thing that differs).
+static uint32_t first_row(app_replay *r, const set_block *b, const core_columns *set) {
+    if (b->rows > r->capacity) {
+        r->row_hash = core_realloc(r->row_hash, r->capacity * sizeof *r->row_hash,
+                                   b->rows * sizeof *r->row_hash);
+        r->capacity = b->rows;
+    }
+    core_columns_row_hash(set, r->row_hash);
+    for (uint32_t i = 0; i < b->rows; i++) {
+        uint16_t was;
+        memcpy(&was, b->row_hash + i * sizeof was, sizeof was);
+        if (was != r->row_hash[i]) {
+            return i;
+        }
+    }
+    return b->rows;
+}
+
+static bool check_set(app_replay *r, const set_block *b, const core_columns *set, const scene *s) {
+    unsigned long long step = r->done + 1;
+    uint64_t column[CORE_COLUMNS_MAX];
+    uint32_t number[CORE_COLUMNS_MAX], columns = app_journal_columns(set, number);
+    if (strcmp(b->name, set->name) != 0 || b->columns != columns) {
+        return core_fail(
+            "replay diverged at step %llu: the recording has '%s' with %u columns, this "
+            "run '%s' with %u",
+            step, b->name, b->columns, set->name, columns);
+    }
+    if (b->rows != core_columns_count(set)) {
+        return core_fail("replay diverged at step %llu: %s has %u rows, the recording %u", step,
+                         set->name, core_columns_count(set), b->rows);
+    }
+    core_columns_hash(set, column);
+    for (uint32_t i = 0; i < b->columns; i++) {
+        uint64_t was;
+        memcpy(&was, b->column_hash + i * sizeof was, sizeof was);
+        if (was != column[number[i]]) {
+            char object[192];
+            scene_describe_row(s, set, first_row(r, b, set), object, sizeof object);
+            return core_fail("replay diverged at step %llu: %s, column %s", step, object,
+                             set->column[number[i]].name);
+        }
+    }
+    return true;
+}
+
+bool app_replay_check(app_replay *r, const scene *s) {
+    const core_columns *set[JOURNAL_MAX_SETS];
+    uint32_t sets = (uint32_t)CORE_MIN(scene_state(s, set, JOURNAL_MAX_SETS), JOURNAL_MAX_SETS);
+    uint32_t recorded = take_count(&r->next, JOURNAL_MAX_SETS);
+    bool ok = true;
+    for (uint32_t i = 0; i < recorded; i++) {
+        set_block b = take_set(&r->next);
+        if (ok && i < sets) {
+            ok = check_set(r, &b, set[i], s);
+        }
+    }
+    if (ok && recorded != sets) {
+        ok =
+            core_fail("replay diverged at step %llu: this run has %u column sets, the recording %u",
+                      (unsigned long long)r->done + 1, sets, recorded);
+    }
+    r->done++;
+    return ok;
+}

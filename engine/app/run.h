@@ -1,0 +1,79 @@
+// One run of `corsac run`: what its files share.
+#ifndef APP_RUN_H
+#define APP_RUN_H
+
+#include "app/files.h"
+#include "app/input.h"
+#include "app/journal.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "script/script.h"
+
+typedef enum app_exit { // design page 4
+    APP_EXIT_FINE = 0,
+    APP_EXIT_SCRIPT = 1,
+    APP_EXIT_USAGE = 2,
+    APP_EXIT_EXPECTATION = 3,
+    APP_EXIT_DIVERGED = 4,
+    APP_EXIT_ENVIRONMENT = 5,
+    APP_EXIT_INTERRUPTED = 130
+} app_exit;
+
+#define APP_OPEN_END   UINT64_MAX
+#define APP_MAX_PARAMS 256
+
+typedef struct app_run {
+    const app_options *opt;
+    app_scene_path path;
+    char entry[256]; // virtual path of the present scene
+    core_vfs *vfs;
+    core_jobs *jobs;
+    core_metrics *metrics;
+    scene *scene;
+    script *script;
+    script_host host;
+    script_conf conf;
+    gfx_device *device;
+    app_input input;
+    app_report report;
+    app_recorder *recorder;
+    app_replay *replay;
+    app_journal_header start; // what the run was started with: given, or read from a recording
+    const char *argument[16];
+    char param[APP_MAX_PARAMS][64]; // names that the script asked for
+    uint32_t param_count;
+    uint64_t last_step;  // APP_OPEN_END: until told
+    uint64_t sampled_at; // report.steps of the last accuracy sample
+    uint64_t filed_at;   // report.steps of the last frame written to a file
+    uint32_t heard;      // queued events that the script heard during a pause
+    uint32_t width, height;
+    int expectations_missed;
+    // asked for by keys or the script, done between steps
+    bool paused, single_step, overlay, quit, reload;
+    float time_scale;
+    int exit_code;
+    char next_scene[256]; // "": stay
+    char *run_data;       // JSON from the former scene to the next, NULL: none
+    uint64_t watch_stamp;
+    app_exit failed; // first reason that ended the run, APP_EXIT_FINE: none
+} app_run;
+
+// run.c
+bool app_scene_open(app_run *r);  // false: r->failed says why
+void app_scene_close(app_run *r); // quit callback, expectations
+bool app_interrupted(void);
+bool app_fail(app_run *r, app_exit why); // keeps the first; false
+// host.c
+script_host app_host(app_run *r);
+// loop.c
+void app_loop(app_run *r);
+// frame.c
+bool app_device_open(app_run *r, bool window);
+bool app_frame(app_run *r, float alpha); // draws the scene, the overlay, the error screen
+bool app_frame_wanted(const app_run *r, uint64_t step);
+bool app_frame_files(app_run *r, uint64_t step); // shots and video of this step
+// progress.c
+void app_progress(const app_run *r);
+void app_progress_end(const app_run *r);
+
+#endif
