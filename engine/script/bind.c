@@ -132,15 +132,17 @@ void bind_describe(const bind_arg *arg, char *out, size_t size) {
         snprintf(values, sizeof values, " of type %s", arg->type->name);
     }
     if (arg->range == BIND_POSITIVE) {
-        snprintf(range, sizeof range, " > 0");
+        snprintf(range, sizeof range, ", > 0");
     } else if (arg->range == BIND_NOT_NEGATIVE) {
-        snprintf(range, sizeof range, " >= 0");
+        snprintf(range, sizeof range, ", >= 0");
     } else if (arg->range == BIND_BETWEEN) {
-        snprintf(range, sizeof range, " from %.14g to %.14g", arg->min, arg->max);
+        snprintf(range, sizeof range, ", %.14g to %.14g", arg->min, arg->max);
     }
-    snprintf(out, size, "%s%s%s%s%s", kind_name(arg), values, range, arg->unit ? " in " : "",
-             arg->unit ? arg->unit : "");
+    snprintf(out, size, "%s%s%s%s%s", kind_name(arg), values, arg->unit ? " in " : "",
+             arg->unit ? arg->unit : "", range);
 }
+
+static const char *article(const char *noun) { return strchr("AEIOUaeiou", noun[0]) ? "an" : "a"; }
 
 static const bind_type *type_at(script *s, lua_State *L, int index) {
     if (lua_type(L, index) != LUA_TUSERDATA || !lua_getmetatable(L, index)) {
@@ -176,7 +178,8 @@ static void describe_value(script *s, lua_State *L, int index, char *out, size_t
     }
     case LUA_TUSERDATA: {
         const bind_type *type = type_at(s, L, index);
-        snprintf(out, size, "a %s", type ? type->name : "userdata");
+        const char *name = type ? type->name : "userdata";
+        snprintf(out, size, "%s %s", article(name), name);
         break;
     }
     default:
@@ -627,8 +630,8 @@ static int call_method(lua_State *L) {
     if (type_at(s, L, 1) != type) {
         char got[96];
         describe_value(s, L, 1, got, sizeof got);
-        bind_error(L, "%s: expected a %s before the colon, got %s; write object:%s(...)",
-                   path.owner, type->name, got, fn->name);
+        bind_error(L, "%s: expected %s %s before the colon, got %s; write object:%s(...)",
+                   path.owner, article(type->name), type->name, got, fn->name);
     }
     const bind_object *object = lua_touserdata(L, 1);
     if (!type->alive(s, object->handle)) {

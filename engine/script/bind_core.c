@@ -306,6 +306,11 @@ static int get_dt(script *s, lua_State *L, void *args) {
     lua_pushnumber(L, (double)scene_dt(s->scene));
     return 1;
 }
+static int get_seed(script *s, lua_State *L, void *args) {
+    (void)args;
+    lua_pushnumber(L, (double)s->seed);
+    return 1;
+}
 static int is_headless(script *s, lua_State *L, void *args) {
     (void)args;
     lua_pushboolean(L, s->headless);
@@ -357,6 +362,8 @@ static const bind_fn root_functions[] = {
      BIND_ANY, .mod = true, .cost = 2, .run = get_step},
     {"getDt", "Length of a step.", NULL, BIND_RETURNS({"dt", "number", "s"}), 0, BIND_ANY,
      .mod = true, .cost = 2, .run = get_dt},
+    {"getSeed", "Seed of the run (--seed).", NULL, BIND_RETURNS({"seed", "integer", NULL}), 0,
+     BIND_RUNNING, .run = get_seed},
     {"isHeadless", "Whether the run has no window.", NULL,
      BIND_RETURNS({"headless", "boolean", NULL}), 0, BIND_VIEW | BIND_QUIT, .run = is_headless},
     {0}};

@@ -45,6 +45,7 @@ struct script {
     uint32_t stopped;     // bind_phase bits of callbacks that an error has stopped
     char *run_data;       // JSON handed to the next scene by corsac.run
     double time;          // s of simulated time
+    uint64_t seed;        // of the run
     int corsac_ref;       // the table `corsac`
     int error_screen_ref; // scripts/corsac/error.lua
     char root[200];       // virtual folder of the game with its '/', "" for the tree's root

@@ -88,7 +88,7 @@ static void push_global_hint(lua_State *L, const char *message) {
     lua_remove(L, -2);
 }
 
-static void push_traceback(lua_State *L) {
+static void push_traceback(lua_State *L, uint32_t phase) {
     lua_Debug frame;
     luaL_Buffer text;
     luaL_buffinit(L, &text);
@@ -100,16 +100,19 @@ static void push_traceback(lua_State *L) {
             continue;
         }
         bool main = strcmp(frame.what, "main") == 0;
-        snprintf(line, sizeof line, "\n    %s:%d: in %s%s%s", frame.short_src, frame.currentline,
-                 main         ? "the file's own code"
-                 : frame.name ? "'"
-                              : "a function",
-                 main         ? ""
-                 : frame.name ? frame.name
-                              : "",
-                 main || !frame.name ? "" : "'");
+        if (frame.name && !main) {
+            snprintf(line, sizeof line, "\n    %s:%d: in '%s'", frame.short_src, frame.currentline,
+                     frame.name);
+        } else {
+            snprintf(line, sizeof line, "\n    %s:%d: in %s", frame.short_src, frame.currentline,
+                     main ? "the file's own code" : "a function");
+        }
         luaL_addstring(&text, line);
         lines++;
+    }
+    if (phase != BIND_TOP) {
+        luaL_addstring(&text, "\n    called as ");
+        luaL_addstring(&text, bind_phase_name(phase));
     }
     luaL_pushresult(&text);
 }
@@ -126,7 +129,8 @@ static int with_traceback(lua_State *L) {
         lua_tostring(L, 1);
     }
     push_global_hint(L, lua_tostring(L, 1));
-    push_traceback(L);
+    const script *s = lua_touserdata(L, lua_upvalueindex(1));
+    push_traceback(L, s->phase);
     lua_concat(L, 3);
     return 1;
 }
@@ -144,7 +148,8 @@ bool script_call(script *s, uint32_t phase, int argc, int results) {
     lua_State *L = s->L;
     int base = lua_gettop(L) - argc;
     uint32_t before = s->phase;
-    lua_pushcfunction(L, with_traceback);
+    lua_pushlightuserdata(L, s);
+    lua_pushcclosure(L, with_traceback, 1);
     lua_insert(L, base);
     s->phase = phase;
     bool good = lua_pcall(L, argc, results, base) == 0;
@@ -186,6 +191,7 @@ static bool call_callback(script *s, uint32_t phase, int argc) {
 }
 
 bool script_load(script *s) {
+    s->seed = scene_rng(s->scene, CORE_RNG_SIM)->seed;
     if (!push_callback(s, "load", BIND_LOAD)) {
         return !(s->stopped & BIND_LOAD);
     }
