@@ -65,7 +65,9 @@ TEST_SRC := $(wildcard tests/*/test_*.c)
 LONG_SRC := $(wildcard tests/long/*/test_*.c)
 TEST_BIN := $(TEST_SRC:%.c=$(OUT)/%)
 LONG_BIN := $(LONG_SRC:%.c=$(OUT)/%)
-TEST_AID := $(patsubst %.c,$(OBJ)/%.o,$(wildcard tests/ref/*.c tests/support/*.c)) $(OBJ)/gen/unity/unity.o
+TEST_AID := $(patsubst %.c,$(OBJ)/%.o,$(filter-out %.simd.c,$(wildcard tests/ref/*.c tests/support/*.c))) \
+    $(foreach s,sse2 avx2 avx512,$(patsubst %.simd.c,$(OBJ)/%.$(s).o,$(wildcard tests/support/*.simd.c))) \
+    $(OBJ)/gen/unity/unity.o
 TEST_ROOMS := $(sort $(foreach f,$(TEST_SRC),$(word 2,$(subst /, ,$f))))
 LUA_ROOMS := script scene app
 $(TEST_BIN) $(LONG_BIN): $(OUT)/%: $(OBJ)/%.o $(TEST_AID) $(OUT)/libcorsac.a $(OBJ)/link

@@ -103,18 +103,20 @@ static int reduce(double x, core_dd *r) {
     return (int)((int64_t)kf & 3);
 }
 
-// sin(r) as head + tail with the tail's error near 2^-57 of the head.
+// sin(r) and cos(r) as head + tail. The square of r is taken as a pair: its rounding would be the
+// largest error left.
 static core_dd sin_reduced(core_dd r) {
-    double z = r.hi * r.hi;
-    double tail = r.lo - 0.5 * z * r.lo;
-    return core_dd_fast_sum(r.hi, tail + r.hi * z * CORE_POLY64(poly_sin, z));
+    core_dd z = core_dd_product(r.hi, r.hi);
+    double tail = r.lo - (0.5 * z.hi * r.lo + r.hi * z.lo * (1.0 / 6.0));
+    return core_dd_fast_sum(r.hi, tail + r.hi * (z.hi * CORE_POLY64(poly_sin, z.hi)));
 }
 
 static core_dd cos_reduced(core_dd r) {
-    double z = r.hi * r.hi, half_z = 0.5 * z;
-    double w = 1.0 - half_z;
-    double rest = z * z * CORE_POLY64(poly_cos, z) - r.hi * r.lo;
-    return core_dd_fast_sum(w, ((1.0 - w) - half_z) + rest);
+    core_dd z = core_dd_product(r.hi, r.hi);
+    double half_z = 0.5 * z.hi;
+    double rest = z.hi * z.hi * CORE_POLY64(poly_cos, z.hi) - (r.hi * r.lo + 0.5 * z.lo);
+    core_dd head = core_dd_fast_sum(1.0, -half_z);
+    return core_dd_fast_sum(head.hi, head.lo + rest);
 }
 
 double core_sin(double x) {
