@@ -38,10 +38,10 @@ static void alignment_does_not_matter(void) {
     }
 }
 
-// Strict avalanche: flipping any input bit flips each output bit with probability 1/2. 2000 trials:
-// 5.5 standard deviations are 0.061.
+// Strict avalanche: flipping any input bit flips each output bit with probability 1/2. 800 trials:
+// 5.6 standard deviations are 0.1.
 static void expect_avalanche(size_t bytes) {
-    enum { TRIALS = 2000 };
+    enum { TRIALS = 800 };
     core_rng rng = core_rng_make(bytes, 0);
     uint8_t data[256];
     for (size_t bit = 0; bit < bytes * 8; bit += 1 + bytes / 24) {
@@ -60,7 +60,7 @@ static void expect_avalanche(size_t bytes) {
         }
         for (int out = 0; out < 64; ++out) {
             double p = (double)flips[out] / TRIALS;
-            TEST_ASSERT_TRUE_MESSAGE(p > 0.439 && p < 0.561, "biased output bit");
+            TEST_ASSERT_TRUE_MESSAGE(p > 0.4 && p < 0.6, "biased output bit");
         }
     }
 }
