@@ -165,6 +165,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     b->type[i] = (uint8_t)d->type;
     b->layer[i] = (uint8_t)d->layer;
     b->user[i] = d->user;
+    b->flags[i] |= d->contact_events ? PHYS_BODY_EVENTS : 0u;
     b->seen[i] = phys_get3(b->cx, b->cy, b->cz, i);
     for (uint32_t k = count; k-- > 0;) {
         add_shape(w, h.index, i, &shapes[k]);
@@ -240,6 +241,20 @@ static uint32_t live_row(const phys_world *w, phys_body body, const char *what) 
 uint64_t phys_body_user(const phys_world *w, phys_body body) {
     uint32_t i = live_row(w, body, "user");
     return i == CORE_NO_ROW ? 0 : w->bodies.user[i];
+}
+
+uint32_t phys_body_layer(const phys_world *w, phys_body body) {
+    uint32_t i = live_row(w, body, "layer");
+    return i == CORE_NO_ROW ? 0 : w->bodies.layer[i];
+}
+
+bool phys_body_set_layer(phys_world *w, phys_body body, uint32_t layer) {
+    uint32_t i = live_row(w, body, "set layer");
+    if (i == CORE_NO_ROW || layer > 31) {
+        return i != CORE_NO_ROW && core_fail("phys body: layer is %u, expected 0..31", layer);
+    }
+    w->bodies.layer[i] = (uint8_t)layer;
+    return true;
 }
 
 float phys_body_mass(const phys_world *w, phys_body body) {

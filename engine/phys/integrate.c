@@ -16,12 +16,17 @@ static void half_turn(float x, float *s, float *c) {
 void phys_integrate_velocity(phys_world *w, float h) {
     phys_bodies *b = &w->bodies;
     uint32_t n = core_columns_count(&b->set);
+    bool fields = core_columns_count(&w->fields.set) != 0;
     for (uint32_t i = 0; i < n; i++) {
         if (b->type[i] != PHYS_DYNAMIC) {
             continue;
         }
         core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
         a = core_v3_mad(a, b->force[i], b->im[i]);
+        if (fields) { // of the present place: with the new velocity this stays symplectic
+            core_vec3 at = phys_get3(b->cx, b->cy, b->cz, i);
+            a = core_v3_add(a, phys_field_acceleration(w, at, b->layer[i]));
+        }
         core_vec3 v = core_v3_mad(phys_get3(b->vx, b->vy, b->vz, i), a, h);
         core_vec3 o = phys_get3(b->wx, b->wy, b->wz, i);
         core_vec3 t = b->torque[i];

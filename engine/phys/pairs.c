@@ -18,8 +18,9 @@ void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b) {
 
 bool phys_pair_wanted(const phys_world *w, uint32_t a, uint32_t b) {
     uint32_t ra = w->shapes.row[a], rb = w->shapes.row[b];
-    const uint8_t *type = w->bodies.type;
-    return ra != rb && (type[ra] == PHYS_DYNAMIC || type[rb] == PHYS_DYNAMIC);
+    const uint8_t *type = w->bodies.type, *layer = w->bodies.layer;
+    return ra != rb && (type[ra] == PHYS_DYNAMIC || type[rb] == PHYS_DYNAMIC) &&
+           (w->rule[layer[ra]] >> layer[rb] & 1u) != 0;
 }
 
 static uint64_t pair_key(uint32_t slot_a, uint32_t slot_b) {
@@ -115,10 +116,22 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
     }
 }
 
-static void contact_remove(phys_world *w, core_columns *set, const uint32_t *sa, const uint32_t *sb,
-                           uint32_t row) {
-    map_remove(&w->map, pair_key(sa[row], sb[row]));
-    core_columns_remove(set, core_columns_handle(set, row), NULL, NULL);
+static void ball_remove(phys_world *w, uint32_t row, phys_event_list *events) {
+    phys_balls *c = &w->balls;
+    if (c->touch[row]) {
+        phys_events_contact_end(w, events, c->sa[row], c->sb[row]);
+    }
+    map_remove(&w->map, pair_key(c->sa[row], c->sb[row]));
+    core_columns_remove(&c->set, core_columns_handle(&c->set, row), NULL, NULL);
+}
+
+static void manifold_remove(phys_world *w, uint32_t row, phys_event_list *events) {
+    phys_contacts *c = &w->contacts;
+    if (c->touch[row]) {
+        phys_events_contact_end(w, events, c->sa[row], c->sb[row]);
+    }
+    map_remove(&w->map, pair_key(c->sa[row], c->sb[row]));
+    core_columns_remove(&c->set, core_columns_handle(&c->set, row), NULL, NULL);
 }
 
 // Bottom-up merge sort of keys: no allocation, one order.
@@ -138,12 +151,12 @@ static void sort_keys(uint64_t *key, uint64_t *tmp, uint32_t n) {
 static void remove_unstamped(phys_world *w) {
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
         if (w->balls.stamp[i] != w->stamp) {
-            contact_remove(w, &w->balls.set, w->balls.sa, w->balls.sb, i);
+            ball_remove(w, i, &w->events);
         }
     }
     for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
         if (w->contacts.stamp[i] != w->stamp) {
-            contact_remove(w, &w->contacts.set, w->contacts.sa, w->contacts.sb, i);
+            manifold_remove(w, i, &w->events);
         }
     }
 }
@@ -184,12 +197,12 @@ void phys_pairs_update(phys_world *w) {
 void phys_pairs_drop_shape(phys_world *w, uint32_t slot) {
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
         if (w->balls.sa[i] == slot || w->balls.sb[i] == slot) {
-            contact_remove(w, &w->balls.set, w->balls.sa, w->balls.sb, i);
+            ball_remove(w, i, &w->pending);
         }
     }
     for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
         if (w->contacts.sa[i] == slot || w->contacts.sb[i] == slot) {
-            contact_remove(w, &w->contacts.set, w->contacts.sa, w->contacts.sb, i);
+            manifold_remove(w, i, &w->pending);
         }
     }
 }
@@ -214,4 +227,6 @@ void phys_pairs_release(phys_world *w) {
     core_free(w->map.value);
     core_free(w->pairs.pair);
     core_free(w->order);
+    core_free(w->events.event);
+    core_free(w->pending.event);
 }

@@ -12,6 +12,8 @@
 typedef struct phys_world phys_world;
 typedef core_handle phys_body;
 typedef core_handle phys_shape;
+typedef core_handle phys_trigger;
+typedef core_handle phys_field;
 
 typedef enum phys_body_type { PHYS_DYNAMIC, PHYS_STATIC, PHYS_KINEMATIC } phys_body_type;
 typedef enum phys_shape_type {
@@ -84,6 +86,7 @@ typedef struct phys_body_desc {
     float linear_damping, angular_damping; // 1/s, >= 0
     float gravity_scale;                   // default 1
     uint32_t layer;                        // 0..31
+    bool contact_events;                   // report touches of this body (phys_world_events)
     uint64_t user;                         // the caller's own, never read
     uint32_t cookie;
 } phys_body_desc;
@@ -109,6 +112,73 @@ bool phys_body_set_angular_velocity(phys_world *world, phys_body body, core_vec3
 bool phys_body_apply_force(phys_world *world, phys_body body, core_vec3 force); // N, next step only
 bool phys_body_apply_impulse(phys_world *world, phys_body body, core_vec3 impulse,
                              core_vec3 at); // N s, world point
+
+// Layers: two layers collide unless a rule says otherwise. Symmetric; takes effect at the next
+// step. Names are kept by the caller. False + core_fail for layers above 31.
+bool phys_world_set_rule(phys_world *world, uint32_t layer_a, uint32_t layer_b, bool collide);
+bool phys_world_rule(const phys_world *world, uint32_t layer_a, uint32_t layer_b);
+bool phys_body_set_layer(phys_world *world, phys_body body, uint32_t layer);
+uint32_t phys_body_layer(const phys_world *world, phys_body body); // 0 when stale
+
+// Regions that report the dynamic and kinematic bodies inside them and push nothing.
+typedef struct phys_trigger_desc {
+    phys_shape_type type; // sphere or box
+    core_vec3 half;       // box: half extents (m)
+    float radius;         // sphere (m)
+    core_vec3 position;
+    core_quat rotation;
+    uint32_t layers; // bit per body layer that is seen; 0: all
+    uint64_t user;
+    uint32_t cookie;
+} phys_trigger_desc;
+phys_trigger_desc phys_trigger_desc_default(phys_shape_type type);
+phys_trigger phys_trigger_create(phys_world *world, const phys_trigger_desc *desc);
+// Bodies inside get their exit event in the next step.
+bool phys_trigger_destroy(phys_world *world, phys_trigger trigger);
+bool phys_trigger_alive(const phys_world *world, phys_trigger trigger);
+bool phys_trigger_set_position(phys_world *world, phys_trigger trigger, core_vec3 position);
+bool phys_trigger_set_rotation(phys_world *world, phys_trigger trigger, core_quat rotation);
+uint64_t phys_trigger_user(const phys_world *world, phys_trigger trigger);
+
+// What happened in the last step, ordered by trigger and body, then contacts by their age. Exactly
+// one ENTER and one EXIT a visit, STAY in every step between; likewise BEGIN and END.
+typedef enum phys_event_kind {
+    PHYS_TRIGGER_ENTER,
+    PHYS_TRIGGER_STAY,
+    PHYS_TRIGGER_EXIT,
+    PHYS_CONTACT_BEGIN, // of bodies made with contact_events
+    PHYS_CONTACT_END
+} phys_event_kind;
+typedef struct phys_event {
+    phys_event_kind kind;
+    phys_trigger trigger; // null for contacts; stale after its destruction
+    phys_body a, b;       // trigger: a is the body, b null. Either may be stale in EXIT and END
+    core_vec3 normal;     // BEGIN: unit, from a to b
+    float speed;          // BEGIN: approach speed along the normal (m/s)
+} phys_event;
+// Valid until the next step. *count may be 0 with a NULL result.
+const phys_event *phys_world_events(const phys_world *world, uint32_t *count);
+
+// Accelerations that act on dynamic bodies, everywhere or inside a region. Several fields add up.
+typedef enum phys_field_type { PHYS_FIELD_UNIFORM, PHYS_FIELD_POINT } phys_field_type;
+typedef struct phys_field_desc {
+    phys_field_type type;
+    core_vec3 acceleration; // uniform (m/s^2)
+    core_vec3 center;       // point
+    float strength;        // point: towards the centre, strength / distance^2 (m^3/s^2); < 0 repels
+    float core;            // point: > 0; inside this distance the pull falls linearly to 0 (m)
+    bool bounded;          // acts only on bodies whose centre of mass is inside the region below
+    phys_shape_type shape; // sphere or box
+    core_vec3 position, half;
+    core_quat rotation;
+    float radius;
+    uint32_t layers; // as in triggers
+    uint32_t cookie;
+} phys_field_desc;
+phys_field_desc phys_field_desc_default(phys_field_type type);
+phys_field phys_field_create(phys_world *world, const phys_field_desc *desc);
+bool phys_field_destroy(phys_world *world, phys_field field);
+bool phys_field_alive(const phys_world *world, phys_field field);
 
 // The poses, for sync and columns(): arrays of phys_body_count rows, valid until the next create,
 // destroy or step. COM positions equal origins for single centred shapes; these are body origins.

@@ -159,19 +159,32 @@ core_vec3 phys_principal(const phys_mat3 *inertia, core_quat *frame) {
     return core_v3((float)a[0][0], (float)a[1][1], (float)a[2][2]);
 }
 
+phys_geom phys_geom_make(phys_shape_type type, core_vec3 position, core_quat rotation,
+                         core_vec3 half, float radius) {
+    phys_geom g = {
+        .type = type, .position = position, .rotation = rotation, .half = half, .radius = radius};
+    g.axes = phys_quat_mat(rotation);
+    return g;
+}
+
 phys_geom phys_shape_geom(const phys_world *w, uint32_t i) {
     const phys_shapes *s = &w->shapes;
     const phys_bodies *b = &w->bodies;
-    uint32_t row = s->row[i];
+    uint32_t row = phys_slot_row(&b->set, s->body[i]);
     core_quat q = phys_body_quat(b, row);
     core_vec3 o = phys_get3(b->px, b->py, b->pz, row);
-    phys_geom g = {.type = (phys_shape_type)s->type[i],
-                   .position = core_v3_add(o, phys_rotate(q, s->position[i])),
-                   .rotation = phys_quat_mul(q, s->rotation[i]),
-                   .half = s->half[i],
-                   .radius = s->radius[i]};
-    g.axes = phys_quat_mat(g.rotation);
-    return g;
+    return phys_geom_make((phys_shape_type)s->type[i],
+                          core_v3_add(o, phys_rotate(q, s->position[i])),
+                          phys_quat_mul(q, s->rotation[i]), s->half[i], s->radius[i]);
+}
+
+bool phys_geom_contains(const phys_geom *g, core_vec3 point) {
+    core_vec3 d = core_v3_sub(point, g->position);
+    if (g->type == PHYS_SPHERE) {
+        return core_v3_dot(d, d) <= g->radius * g->radius;
+    }
+    core_vec3 l = phys_abs3(phys_mat_tmul(&g->axes, d));
+    return l.x <= g->half.x && l.y <= g->half.y && l.z <= g->half.z;
 }
 
 core_aabb phys_geom_bounds(const phys_geom *g) {

@@ -68,6 +68,9 @@ static bool make_storage(phys_world *w, uint32_t max_bodies) {
            phys_shapes_init(&w->shapes, "phys.shapes", max_bodies * 2) &&
            phys_balls_init(&w->balls, "phys.balls", pairs) &&
            phys_contacts_init(&w->contacts, "phys.contacts", pairs) &&
+           phys_triggers_init(&w->triggers, "phys.triggers", 1u << 16) &&
+           phys_visits_init(&w->visits, "phys.visits", 1u << 20) &&
+           phys_fields_init(&w->fields, "phys.fields", 1u << 12) &&
            core_arena_init(&w->scratch, "phys.scratch", (size_t)16 << 30);
 }
 
@@ -84,6 +87,9 @@ phys_world *phys_world_create(const phys_world_desc *d) {
     }
     if (d->zero_gravity) {
         w->gravity = core_v3(0, 0, 0);
+    }
+    for (int i = 0; i < 32; i++) {
+        w->rule[i] = UINT32_MAX;
     }
     w->substeps = d->substeps;
     w->iterations = d->iterations;
@@ -104,6 +110,9 @@ void phys_world_destroy(phys_world *w) {
     core_columns_release(&w->shapes.set);
     core_columns_release(&w->balls.set);
     core_columns_release(&w->contacts.set);
+    core_columns_release(&w->triggers.set);
+    core_columns_release(&w->visits.set);
+    core_columns_release(&w->fields.set);
     core_arena_release(&w->scratch);
     phys_pairs_release(w);
     core_free(w);
@@ -148,6 +157,23 @@ bool phys_world_set(phys_world *w, const char *name, const char *value) {
     const char *near = core_nearest(name, names, CORE_COUNT_OF(names));
     return core_fail("phys setting '%s' is unknown%s%s", name, near ? ", did you mean " : "",
                      near ? near : "");
+}
+
+static bool check_layers(uint32_t a, uint32_t b) {
+    return (a < 32 && b < 32) || core_fail("phys layers: %u and %u, expected 0..31", a, b);
+}
+
+bool phys_world_set_rule(phys_world *w, uint32_t a, uint32_t b, bool collide) {
+    if (!check_layers(a, b)) {
+        return false;
+    }
+    w->rule[a] = collide ? w->rule[a] | 1u << b : w->rule[a] & ~(1u << b);
+    w->rule[b] = collide ? w->rule[b] | 1u << a : w->rule[b] & ~(1u << a);
+    return true;
+}
+
+bool phys_world_rule(const phys_world *w, uint32_t a, uint32_t b) {
+    return check_layers(a, b) && (w->rule[a] >> b & 1u) != 0;
 }
 
 // A body that is no longer finite is stopped where it last made sense (its origin is still that of
@@ -202,6 +228,7 @@ bool phys_world_step(phys_world *w, float dt) {
     }
     core_arena_reset(&w->scratch);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS);
+    phys_events_begin(w);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_BROAD);
     phys_shapes_update_bounds(w, dt);
     w->broad->find(w);
@@ -211,15 +238,18 @@ bool phys_world_step(phys_world *w, float dt) {
     phys_narrow_update(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_NARROW);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    phys_events_contacts(w, dt);
     w->solver->step(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
     finish_step(w, dt);
+    phys_events_triggers(w);
     core_stage_end(w->metrics, CORE_STAGE_PHYS);
     return true;
 }
 
 int phys_world_state(const phys_world *w, const core_columns **out, int capacity) {
-    const core_columns *set[] = {&w->bodies.set, &w->shapes.set, &w->balls.set, &w->contacts.set};
+    const core_columns *set[] = {&w->bodies.set,   &w->shapes.set, &w->balls.set, &w->contacts.set,
+                                 &w->triggers.set, &w->visits.set, &w->fields.set};
     for (int i = 0; out != NULL && i < capacity && i < (int)CORE_COUNT_OF(set); i++) {
         out[i] = set[i];
     }
@@ -229,7 +259,10 @@ int phys_world_state(const phys_world *w, const core_columns **out, int capacity
 size_t phys_world_bytes(const phys_world *w) {
     return sizeof *w + core_columns_bytes(&w->bodies.set) + core_columns_bytes(&w->shapes.set) +
            core_columns_bytes(&w->balls.set) + core_columns_bytes(&w->contacts.set) +
-           w->scratch.committed + w->map.capacity * (sizeof(uint64_t) + sizeof(uint32_t)) +
+           core_columns_bytes(&w->triggers.set) + core_columns_bytes(&w->visits.set) +
+           core_columns_bytes(&w->fields.set) +
+           (w->events.capacity + w->pending.capacity) * sizeof(phys_event) + w->scratch.committed +
+           w->map.capacity * (sizeof(uint64_t) + sizeof(uint32_t)) +
            w->pairs.capacity * sizeof(phys_pair) + w->order_capacity * sizeof(uint32_t);
 }
 
@@ -246,7 +279,7 @@ void phys_world_counts(const phys_world *w, core_metrics *m) {
     core_metrics_set(m, CORE_COUNT_CONTACTS, w->touching);
     core_metrics_set(m, CORE_COUNT_JOINTS, 0);
     core_metrics_set(m, CORE_COUNT_ISLANDS, 0);
-    core_metrics_set(m, CORE_COUNT_TRIGGERS, 0);
+    core_metrics_set(m, CORE_COUNT_TRIGGERS, core_columns_count(&w->triggers.set));
 }
 
 phys_pose_view phys_world_poses(const phys_world *w) {

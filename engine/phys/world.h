@@ -10,20 +10,24 @@
 enum {
     PHYS_WORLD_COOKIE = 0x70776f31,
     PHYS_BODY_COOKIE = 0x70626f31,
-    PHYS_SHAPE_COOKIE = 0x70736831
+    PHYS_SHAPE_COOKIE = 0x70736831,
+    PHYS_TRIGGER_COOKIE = 0x70747231,
+    PHYS_FIELD_COOKIE = 0x70666c31
 };
 
 // Distances in metres. Contacts are kept when closer than the margin, so that a body about to touch
 // is slowed before it sinks in.
 #define PHYS_MARGIN 0.02f
 
-#define PHYS_FAR        1e6f // positions beyond are refused
-#define PHYS_BOUNCE_MIN 0.2f // m/s: slower impacts do not bounce (they would never come to rest)
+#define PHYS_TOUCH      0.0005f // gaps up to this count as touching in events
+#define PHYS_FAR        1e6f    // positions beyond are refused
+#define PHYS_BOUNCE_MIN 0.2f    // m/s: slower impacts do not bounce (they would never come to rest)
 
 enum {
     PHYS_BODY_FRAME = 1u,     // principal axes differ from the body's: `iq*` is used
     PHYS_BODY_ISOTROPIC = 2u, // equal moments (balls): no gyroscopic term, no inertia rotation
-    PHYS_BODY_LOST = 4u       // became non-finite: frozen, named once, left out
+    PHYS_BODY_LOST = 4u,      // became non-finite: frozen, named once, left out
+    PHYS_BODY_EVENTS = 8u     // contacts are reported
 };
 
 // px: body origin, cx: centre of mass, lc: centre in the body's frame. im, ix: inverse mass and
@@ -110,6 +114,7 @@ typedef struct phys_manifold {
     X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
     X(float, jn, CORE_COLUMN_STATE)                                                                \
     X(float, jt1, CORE_COLUMN_STATE)                                                               \
+    X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
     X(float, jt2, CORE_COLUMN_STATE)                                                               \
     X(float, nx, 0)                                                                                \
     X(float, ny, 0)                                                                                \
@@ -122,11 +127,35 @@ CORE_COLUMNS_DECLARE(phys_balls, PHYS_BALL_COLUMNS)
 #define PHYS_CONTACT_COLUMNS(X)                                                                    \
     X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
     X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
+    X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
     X(phys_manifold, manifold, CORE_COLUMN_STATE)                                                  \
     X(uint32_t, a, 0)                                                                              \
     X(uint32_t, b, 0)                                                                              \
     X(uint32_t, stamp, 0)
 CORE_COLUMNS_DECLARE(phys_contacts, PHYS_CONTACT_COLUMNS)
+
+// layers: bit per layer seen, never 0.
+#define PHYS_TRIGGER_COLUMNS(X)                                                                    \
+    X(uint32_t, type, CORE_COLUMN_STATE)                                                           \
+    X(core_vec3, position, CORE_COLUMN_STATE)                                                      \
+    X(core_quat, rotation, CORE_COLUMN_STATE)                                                      \
+    X(core_vec3, half, CORE_COLUMN_STATE)                                                          \
+    X(float, radius, CORE_COLUMN_STATE)                                                            \
+    X(uint32_t, layers, CORE_COLUMN_STATE)                                                         \
+    X(uint64_t, user, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(phys_triggers, PHYS_TRIGGER_COLUMNS)
+// Visits: who is inside which trigger, sorted by trigger slot, then body slot.
+#define PHYS_VISIT_COLUMNS(X)                                                                      \
+    X(core_handle, trigger, CORE_COLUMN_STATE)                                                     \
+    X(core_handle, body, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(phys_visits, PHYS_VISIT_COLUMNS)
+#define PHYS_FIELD_COLUMNS(X) X(phys_field_desc, desc, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(phys_fields, PHYS_FIELD_COLUMNS)
+
+typedef struct phys_event_list {
+    phys_event *event;
+    uint32_t count, capacity;
+} phys_event_list;
 
 // Finds the contact of a pair of shape slots. Open addressing, rebuilt from the columns when
 // needed.
@@ -165,6 +194,11 @@ struct phys_world {
     phys_shapes shapes;
     phys_balls balls;
     phys_contacts contacts;
+    phys_triggers triggers;
+    phys_visits visits;
+    phys_fields fields;
+    uint32_t rule[32];               // bit b of rule[a]: layers a and b collide
+    phys_event_list events, pending; // of the last step; of removals since
     phys_pair_map map;
     phys_pair_list pairs;
     uint32_t *order; // sweep order of shape rows, kept between steps
@@ -246,6 +280,20 @@ void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, 
 // Picks at most 4 of n > 4 points (same plane, unit normal): keep[3] may be -1.
 void phys_manifold_reduce(const core_vec3 *p, const float *separation, int n, core_vec3 normal,
                           int keep[4]);
+
+// events.c, fields.c
+void phys_event_push(phys_event_list *list, const phys_event *event);
+void phys_events_begin(phys_world *world); // forgets the last step's, takes over the pending ones
+void phys_events_triggers(phys_world *world);
+void phys_events_contacts(phys_world *world, float dt);
+void phys_events_contact_end(phys_world *world, phys_event_list *list, uint32_t sa, uint32_t sb);
+// Sum of the fields at a place; gravity excluded.
+core_vec3 phys_field_acceleration(const phys_world *world, core_vec3 at, uint32_t layer);
+bool phys_geom_contains(const phys_geom *geom, core_vec3 point);
+phys_geom phys_geom_make(phys_shape_type type, core_vec3 position, core_quat rotation,
+                         core_vec3 half, float radius);
+bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, float radius,
+                       core_vec3 position);
 
 // integrate.c
 void phys_integrate_velocity(phys_world *world, float h);

@@ -1,0 +1,86 @@
+// Force fields: accelerations that depend on where a body is.
+#include "phys/world.h"
+
+CORE_COLUMNS_DEFINE(phys_fields, PHYS_FIELD_COLUMNS)
+
+phys_field_desc phys_field_desc_default(phys_field_type type) {
+    return (phys_field_desc){
+        .type = type, .core = 0.01f, .rotation = core_quat_identity(), .cookie = PHYS_FIELD_COOKIE};
+}
+
+static bool check_desc(const phys_field_desc *d) {
+    if (d->cookie != PHYS_FIELD_COOKIE) {
+        return core_fail("phys field: description was not made by phys_field_desc_default");
+    }
+    if ((unsigned)d->type > PHYS_FIELD_POINT) {
+        return core_fail("phys field: type %d, expected uniform or point", (int)d->type);
+    }
+    if (d->type == PHYS_FIELD_UNIFORM && !phys_finite3(d->acceleration)) {
+        return core_fail("phys field: acceleration (%g, %g, %g) is not finite",
+                         (double)d->acceleration.x, (double)d->acceleration.y,
+                         (double)d->acceleration.z);
+    }
+    if (d->type == PHYS_FIELD_POINT &&
+        !(phys_finite3(d->center) && phys_finite(d->strength) && d->core > 0.0f)) {
+        return core_fail("phys field: point needs a finite centre and strength (%g) and a core "
+                         "above 0 m (%g)",
+                         (double)d->strength, (double)d->core);
+    }
+    return !d->bounded || phys_region_check("field", d->shape, d->half, d->radius, d->position);
+}
+
+phys_field phys_field_create(phys_world *w, const phys_field_desc *d) {
+    if (!check_desc(d)) {
+        return CORE_NULL_HANDLE;
+    }
+    core_handle h = core_columns_add(&w->fields.set);
+    if (!core_handle_is_null(h)) {
+        phys_field_desc *out = &w->fields.desc[core_columns_count(&w->fields.set) - 1];
+        *out = *d;
+        out->rotation = core_quat_normalize(d->rotation);
+        out->layers = d->layers ? d->layers : UINT32_MAX;
+        w->measured = false;
+    }
+    return h;
+}
+
+bool phys_field_destroy(phys_world *w, phys_field h) {
+    if (!phys_field_alive(w, h)) {
+        return core_fail("phys field: destroy of a stale or null handle (%u:%u)", h.index,
+                         h.generation);
+    }
+    w->measured = false;
+    return core_columns_remove(&w->fields.set, h, NULL, NULL);
+}
+
+bool phys_field_alive(const phys_world *w, phys_field h) {
+    return core_columns_row(&w->fields.set, h) != CORE_NO_ROW;
+}
+
+static core_vec3 pull(const phys_field_desc *f, core_vec3 at) {
+    if (f->type == PHYS_FIELD_UNIFORM) {
+        return f->acceleration;
+    }
+    core_vec3 d = core_v3_sub(f->center, at);
+    float l2 = core_v3_dot(d, d), l = core_sqrtf(l2);
+    float cube = l > f->core ? l2 * l : f->core * f->core * f->core;
+    return core_v3_scale(d, f->strength / cube);
+}
+
+core_vec3 phys_field_acceleration(const phys_world *w, core_vec3 at, uint32_t layer) {
+    core_vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < core_columns_count(&w->fields.set); i++) {
+        const phys_field_desc *f = &w->fields.desc[i];
+        if ((f->layers >> layer & 1u) == 0) {
+            continue;
+        }
+        if (f->bounded) {
+            phys_geom g = phys_geom_make(f->shape, f->position, f->rotation, f->half, f->radius);
+            if (!phys_geom_contains(&g, at)) {
+                continue;
+            }
+        }
+        sum = core_v3_add(sum, pull(f, at));
+    }
+    return sum;
+}
