@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/hash.h"
 #include "core/math_table.h"
 #include "support/ulp.h"
 #include "unity.h"
@@ -235,6 +236,27 @@ static void logarithms_are_monotonic(void) {
     }
 }
 
+// One hash of many results, the same with every compiler and optimisation. It changes only when a
+// function's method does.
+static void same_bits_everywhere(void) {
+    core_rng rng = core_rng_make(13, 1);
+    uint64_t hash = 0;
+    for (int f = 0; f < core_math_table_count; f++) {
+        const core_math_entry *entry = &core_math_table[f];
+        for (int i = 0; i < 4000; i++) {
+            double x = ulp_argument(&rng, entry, i % ULP_KINDS), y = 10.0 * core_rng_double(&rng);
+            double wide = entry->f64 ? entry->f64(x) : entry->f64_2(x, y);
+            float narrow = entry->f32     ? entry->f32((float)x)
+                           : entry->f32_2 ? entry->f32_2((float)x, (float)y)
+                                          : 0.0f;
+            uint64_t bits = isnan(wide) ? 1 : bits_of(wide);
+            uint64_t narrow_bits = isnan(narrow) ? 1 : bits_of((double)narrow);
+            hash = core_hash_mix(core_hash_mix(hash, bits), narrow_bits);
+        }
+    }
+    TEST_ASSERT_EQUAL_HEX64(0x4F1078081736FA96, hash);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_argument);
@@ -245,5 +267,6 @@ int main(void) {
     RUN_TEST(arctangent_of_zeros_and_infinities);
     RUN_TEST(exact_functions);
     RUN_TEST(logarithms_are_monotonic);
+    RUN_TEST(same_bits_everywhere);
     return UNITY_END();
 }
