@@ -9,3 +9,10 @@ float viewDepth(float z) {
     return u_view.camera.w > 0.0 ? u_view.camera.w / z
                                  : mix(u_view.depth_range.y, u_view.depth_range.x, z);
 }
+
+// Unit direction from a world point to the viewer.
+vec3 viewDirection(vec3 world) {
+    mat4 v = u_view.view;
+    return u_view.camera.w > 0.0 ? normalize(u_view.camera.xyz - world)
+                                 : vec3(v[0].z, v[1].z, v[2].z);
+}

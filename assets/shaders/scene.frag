@@ -22,7 +22,7 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
     float metallic = m.emissive_metallic.w;
     float roughness = clamp(m.params.x, MIN_ROUGHNESS, 1.0);
     s.position = v_world;
-    s.view = normalize(u_view.camera.xyz - v_world);
+    s.view = viewDirection(v_world);
     s.normal = normalize(gl_FrontFacing ? v_normal : -v_normal);
     s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
     s.diffuse = base.rgb * (1.0 - metallic);

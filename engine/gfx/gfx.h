@@ -30,12 +30,13 @@ void gfx_world_counts(const gfx_world *world,
                       core_metrics *metrics); // lights, clusters, light_refs, draws, triangles
 // Settings by name, as --set gfx.NAME=VALUE reaches them. False + core_fail naming the nearest name
 // or the allowed values.
-//   render      auto | forward | clustered | none
+//   render      auto (clustered from 4 point and spot lights on) | forward | clustered | none
 //   clusters    cells as XxYxZ, each 1..64, default 16x9x24
 //   slices      exponential | linear
-//   exposure    factor before the tone map, > 0, default 1
-//   tonemap     neutral (Khronos PBR Neutral) | linear
-//   instancing  on | off (off: one draw call per instance; the baseline of the draw-count chart)
+//   first_slice m, the end of the first exponential slice, default 5; 0: none, all from the near
+//   plane assign      naive | per_light: how lights are assigned to cells exposure    factor before
+//   the tone map, > 0, default 1 tonemap     neutral (Khronos PBR Neutral) | linear instancing  on
+//   | off (off: one draw call per instance; the baseline of the draw-count chart)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);
 
 typedef enum gfx_light_type { GFX_POINT, GFX_SPOT, GFX_DIRECTIONAL } gfx_light_type;

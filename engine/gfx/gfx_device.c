@@ -134,11 +134,14 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_quads_release(&d->quads);
     gfx_geometry_release(&d->geometry);
     gfx_shaders_release(&d->shaders);
-    gfx_stream *const streams[] = {&d->view_block, &d->light_block, &d->instance_block,
-                                   &d->bone_block, &d->draw_block};
+    gfx_stream *const streams[] = {&d->view_block,   &d->light_block, &d->instance_block,
+                                   &d->bone_block,   &d->draw_block,  &d->cluster_offsets,
+                                   &d->cluster_lists};
     for (size_t i = 0; i < CORE_COUNT_OF(streams); ++i) {
         gfx_stream_release(streams[i]);
     }
+    gfx_clusters_release(&d->clusters);
+    gfx_cluster_lights_release(&d->cluster_lights);
     glDeleteBuffers(1, &d->material_buffer);
     glDeleteVertexArrays(1, &d->empty_vao);
     release_targets(d);

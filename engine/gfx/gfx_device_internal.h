@@ -2,6 +2,7 @@
 #ifndef GFX_DEVICE_INTERNAL_H
 #define GFX_DEVICE_INTERNAL_H
 
+#include "gfx/gfx_cluster.h"
 #include "gfx/gfx_context.h"
 #include "gfx/gfx_internal.h"
 #include "gfx/gfx_shader.h"
@@ -37,6 +38,19 @@ typedef struct gfx_geometry { // all meshes of one world in common buffers
 // Makes the buffers hold the world's meshes.
 bool gfx_geometry_update(gfx_geometry *g, const gfx_world *world);
 void gfx_geometry_release(gfx_geometry *g);
+
+// ---- lights (gfx_light_upload.c) ----
+typedef struct gfx_light_upload {
+    uint32_t directional, local; // in the light block, in this order
+    bool clustered;
+    gfx_cluster_grid grid; // when clustered
+} gfx_light_upload;
+// View-space bounding spheres of all point and spot lights, in the order of the light block.
+void gfx_cluster_lights_fill(gfx_cluster_lights *out, const gfx_lights *lights,
+                             const gfx_view *view);
+// Fills and binds the light block and, when the view is drawn clustered, its lists.
+void gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *view,
+                       gfx_light_upload *out);
 
 // ---- screen-space quads (gfx_quads.c, gfx_font.c) ----
 typedef struct gfx_font gfx_font;
@@ -93,6 +107,9 @@ struct gfx_device {
     GLuint hdr_texture, depth_texture, hdr_target, ldr_texture, ldr_target;
     GLuint empty_vao;
     gfx_geometry geometry;
+    gfx_stream cluster_offsets, cluster_lists;
+    gfx_clusters clusters;
+    gfx_cluster_lights cluster_lights;
     gfx_stream view_block, light_block, instance_block, bone_block, draw_block;
     GLuint material_buffer;
     uint64_t material_world, material_version;

@@ -19,63 +19,13 @@ static void end_turn(gfx_device *d) {
     d->fence[d->frame] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 }
 
-// ---- lights ----
-
-static void write_light(const gfx_lights *l, uint32_t i, struct gfx_light_block *out) {
-    bool directional = l->type[i] == GFX_DIRECTIONAL;
-    // The cone falls from 1 at cos(inner) to 0 at cos(outer); points have no cone.
-    float scale = 0.0f, offset = 1.0f;
-    if (l->type[i] == GFX_SPOT) {
-        float outer = core_cosf(l->outer[i]), inner = core_cosf(l->inner[i]);
-        scale = 1.0f / CORE_MAX(inner - outer, 1e-4f);
-        offset = -outer * scale;
-    }
-    float r = l->radius[i];
-    *out = (struct gfx_light_block){
-        .position_radius = {l->px[i], l->py[i], l->pz[i], r},
-        .color_type = {l->r[i] * l->intensity[i], l->g[i] * l->intensity[i],
-                       l->b[i] * l->intensity[i], (float)l->type[i]},
-        .direction = {l->dx[i], l->dy[i], l->dz[i], 0.0f},
-        .spot = {scale, offset, directional ? 0.0f : 1.0f / (r * r), 0.0f},
-    };
-}
-
-static const struct gfx_light_block default_sun = {
-    .color_type = {3.0f, 2.9f, 2.7f, GFX_LIGHT_DIRECTIONAL},
-    .direction = {-0.4082f, -0.8165f, -0.4082f, 0.0f},
-};
-
-// Directional lights first, then the others, each in the order of their rows.
-static void upload_lights(gfx_device *d, const gfx_world *world, uint32_t count[2]) {
-    const gfx_lights *l = &world->lights;
-    uint32_t n = core_columns_count(&l->set), at = 0;
-    struct gfx_light_block *out =
-        gfx_stream_begin(&d->light_block, (n + 1) * sizeof *out, d->frame);
-    if (n == 0 && !world->ambient_set) {
-        out[at++] = default_sun;
-    }
-    for (uint32_t i = 0; i < n; ++i) {
-        if (l->type[i] == GFX_DIRECTIONAL) {
-            write_light(l, i, &out[at++]);
-        }
-    }
-    count[0] = at;
-    for (uint32_t i = 0; i < n; ++i) {
-        if (l->type[i] != GFX_DIRECTIONAL) {
-            write_light(l, i, &out[at++]);
-        }
-    }
-    count[1] = at - count[0];
-    gfx_stream_bind(&d->light_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_LIGHTS, at * sizeof *out,
-                    d->frame);
-}
-
 // ---- blocks ----
 
 static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v,
-                        const uint32_t lights[2]) {
+                        const gfx_light_upload *lights) {
     struct gfx_view_block *b = gfx_stream_begin(&d->view_block, sizeof *b, d->frame);
     const gfx_settings *s = &world->settings;
+    const gfx_cluster_grid *g = &lights->grid;
     const float *a = world->ambient;
     float w = (float)d->width, h = (float)d->height;
     *b = (struct gfx_view_block){
@@ -85,7 +35,9 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
         .ambient_sky = {a[0], a[1], a[2], s->exposure},
         .ambient_ground = {0.4f * a[0], 0.4f * a[1], 0.4f * a[2], 0.0f},
         .depth_range = {v->near_plane, v->virtual_far, v->virtual_far, 0.0f},
-        .light_count = {lights[0], lights[1], (uint32_t)s->tonemap, 0},
+        .light_count = {lights->directional, lights->local, (uint32_t)s->tonemap, 0},
+        .cluster_grid = {g->columns, g->rows, g->slices, g->linear},
+        .cluster_scale = {(float)g->columns / w, (float)g->rows / h, g->scale, g->bias},
     };
     memcpy(b->view_proj, v->view_projection.m, sizeof b->view_proj);
     memcpy(b->view, v->view.m, sizeof b->view);
@@ -124,7 +76,7 @@ static void upload_materials(gfx_device *d, const gfx_world *world) {
 
 // ---- passes ----
 
-static bool pass_scene(gfx_device *d, gfx_world *world) {
+static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
     const float *c = world->background;
     const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
     glBindFramebuffer(GL_FRAMEBUFFER, d->hdr_target);
@@ -136,7 +88,7 @@ static bool pass_scene(gfx_device *d, gfx_world *world) {
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(d->hdr_target, GL_COLOR, 0, clear);
     glClearNamedFramebufferfv(d->hdr_target, GL_DEPTH, 0, &depth);
-    return gfx_draw_list_submit(d, world, "scene.frag", 0);
+    return gfx_draw_list_submit(d, world, "scene.frag", clustered ? GFX_FEATURE_CLUSTERED : 0);
 }
 
 static bool pass_tonemap(gfx_device *d) {
@@ -158,18 +110,20 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     gfx_view view;
     gfx_camera camera = gfx_world_camera_or_default(world);
     gfx_view_make(&camera, (float)d->width / (float)d->height, &view);
-    uint32_t lights[2];
+    gfx_light_upload lights;
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CULL);
     bool ok = gfx_geometry_update(&d->geometry, world) && gfx_draw_list_build(d, world, &view);
     core_stage_end(d->metrics, CORE_STAGE_GFX_CULL);
     if (!ok) {
         return false;
     }
+    core_stage_begin(d->metrics, CORE_STAGE_GFX_CLUSTER);
+    gfx_lights_upload(d, world, &view, &lights);
+    core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
-    upload_lights(d, world, lights);
     upload_materials(d, world);
-    upload_view(d, world, &view, lights);
-    ok = pass_scene(d, world) && pass_tonemap(d) && gfx_quads_draw(d, world);
+    upload_view(d, world, &view, &lights);
+    ok = pass_scene(d, world, lights.clustered) && pass_tonemap(d) && gfx_quads_draw(d, world);
     core_stage_end(d->metrics, CORE_STAGE_GFX_DRAW);
     return ok;
 }

@@ -22,18 +22,30 @@ typedef struct gfx_rgba {
     X(uint32_t, type, 0)                                                                           \
     X(float, px, 0)                                                                                \
     X(float, py, 0)                                                                                \
-    X(float, pz, 0) X(float, dx, 0) X(float, dy, 0) X(float, dz, 0) X(float, r, 0) X(float, g, 0)  \
-        X(float, b, 0) X(float, intensity, 0) X(float, radius, 0) X(float, inner, 0)               \
-            X(float, outer, 0)
+    X(float, pz, 0)                                                                                \
+    X(float, dx, 0)                                                                                \
+    X(float, dy, 0)                                                                                \
+    X(float, dz, 0)                                                                                \
+    X(float, r, 0)                                                                                 \
+    X(float, g, 0)                                                                                 \
+    X(float, b, 0)                                                                                 \
+    X(float, intensity, 0)                                                                         \
+    X(float, radius, 0)                                                                            \
+    X(float, inner, 0)                                                                             \
+    X(float, outer, 0)
 CORE_COLUMNS_DECLARE(gfx_lights, GFX_LIGHT_COLUMNS)
 
 #define GFX_INSTANCE_COLUMNS(X)                                                                    \
     X(gfx_rows, rows, 0)                                                                           \
     X(float, cx, 0)                                                                                \
     X(float, cy, 0)                                                                                \
-    X(float, cz, 0) X(float, cr, 0) /* bounding sphere, world */                                   \
-        X(gfx_rgba, color, 0) X(gfx_mesh, mesh, 0) X(gfx_material, material, 0)                    \
-            X(float *, palette, 0) X(uint32_t, palette_bones, 0)
+    X(float, cz, 0)                                                                                \
+    X(float, cr, 0) /* bounding sphere, world */                                                   \
+    X(gfx_rgba, color, 0)                                                                          \
+    X(gfx_mesh, mesh, 0)                                                                           \
+    X(gfx_material, material, 0)                                                                   \
+    X(float *, palette, 0)                                                                         \
+    X(uint32_t, palette_bones, 0)
 CORE_COLUMNS_DECLARE(gfx_instances, GFX_INSTANCE_COLUMNS)
 
 // Vertex streams: positions alone for depth-only passes, then shading, then skinning.
@@ -84,20 +96,16 @@ typedef struct gfx_growing { // array that keeps its memory between frames
 void *gfx_grow(gfx_growing *array, size_t element, size_t extra);
 void gfx_growing_release(gfx_growing *array);
 
-typedef enum gfx_render_mode {
-    GFX_RENDER_AUTO,
-    GFX_RENDER_FORWARD,
-    GFX_RENDER_CLUSTERED,
-    GFX_RENDER_NONE
-} gfx_render_mode;
+enum { GFX_RENDER_AUTO, GFX_RENDER_FORWARD, GFX_RENDER_CLUSTERED, GFX_RENDER_NONE };
 
-typedef struct gfx_settings {
-    gfx_render_mode render;
+typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by offset
+    int render;               // GFX_RENDER_*
     uint32_t grid[3];
-    bool linear_slices;
+    int linear_slices, assign; // assign: gfx_cluster_method
+    float first_slice;         // m
     float exposure;
     int tonemap; // GFX_TONEMAP_*
-    bool instancing;
+    int instancing;
 } gfx_settings;
 
 typedef struct gfx_frame_stats {

@@ -67,39 +67,47 @@ static bool set_grid(gfx_settings *s, const char *value) {
     return true;
 }
 
+// Every setting: a choice of names (an int in gfx_settings) or a number in a range (a float). The
+// grid, whose value has a form of its own, is apart.
+typedef struct setting {
+    const char *name;
+    size_t offset;
+    const char *choice[5]; // empty: a number
+    float least, most;
+} setting;
+
+static const setting table[] = {
+    {"render", offsetof(gfx_settings, render), {"auto", "forward", "clustered", "none"}, 0, 0},
+    {"slices", offsetof(gfx_settings, linear_slices), {"exponential", "linear"}, 0, 0},
+    {"assign", offsetof(gfx_settings, assign), {"naive", "per_light"}, 0, 0},
+    {"first_slice", offsetof(gfx_settings, first_slice), {NULL}, 0.0f, 1e6f},
+    {"exposure", offsetof(gfx_settings, exposure), {NULL}, 1e-6f, 1e6f},
+    {"tonemap", offsetof(gfx_settings, tonemap), {"neutral", "linear"}, 0, 0},
+    {"instancing", offsetof(gfx_settings, instancing), {"off", "on"}, 0, 0},
+};
+
 bool gfx_world_set(gfx_world *world, const char *name, const char *value) {
-    static const char *const settings[] = {"render",   "clusters", "slices",
-                                           "exposure", "tonemap",  "instancing"};
-    static const char *const modes[] = {"auto", "forward", "clustered", "none"};
-    static const char *const slices[] = {"exponential", "linear"};
-    static const char *const tonemaps[] = {"neutral", "linear"};
-    static const char *const switches[] = {"off", "on"};
-    if (!name || !value) {
-        return core_fail("gfx_world_set: name and value are needed");
+    enum { COUNT = CORE_COUNT_OF(table) };
+    const char *names[COUNT + 1] = {[COUNT] = "clusters"};
+    for (int i = 0; i < COUNT; ++i) {
+        names[i] = table[i].name;
     }
-    gfx_settings *s = &world->settings;
-    int choice = 0;
-    bool ok;
-    switch (gfx_find_name(name, settings, (int)CORE_COUNT_OF(settings))) {
-    case 0:
-        ok = set_choice(name, value, modes, 4, &choice);
-        s->render = ok ? (gfx_render_mode)choice : s->render;
-        return ok;
-    case 1:
-        return set_grid(s, value);
-    case 2:
-        ok = set_choice(name, value, slices, 2, &choice);
-        s->linear_slices = ok ? choice == 1 : s->linear_slices;
-        return ok;
-    case 3:
-        return set_number(name, value, 1e-6f, 1e6f, &s->exposure);
-    case 4:
-        return set_choice(name, value, tonemaps, 2, &s->tonemap);
-    case 5:
-        ok = set_choice(name, value, switches, 2, &choice);
-        s->instancing = ok ? choice == 1 : s->instancing;
-        return ok;
-    default:
-        return gfx_fail_name("setting", name, settings, (int)CORE_COUNT_OF(settings));
+    if (!value) {
+        return core_fail("gfx_world_set: a value is needed");
     }
+    int found = gfx_find_name(name, names, COUNT + 1);
+    if (found < 0) {
+        return gfx_fail_name("setting", name, names, COUNT + 1);
+    }
+    if (found == COUNT) {
+        return set_grid(&world->settings, value);
+    }
+    const setting *s = &table[found];
+    void *field = (char *)&world->settings + s->offset;
+    int choices = 0;
+    while (s->choice[choices]) {
+        choices++;
+    }
+    return choices ? set_choice(name, value, s->choice, choices, field)
+                   : set_number(name, value, s->least, s->most, field);
 }

@@ -2,8 +2,7 @@
 // handles; nothing here knows GL.
 #include "gfx/gfx_internal.h"
 
-#include "core/clock.h"
-#include "core/hash.h"
+#include "gfx/gfx_cluster.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -33,7 +32,11 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
     w->id = next_world_id();
     w->jobs = desc->jobs;
     w->metrics = desc->metrics;
-    w->settings = (gfx_settings){.grid = {16, 9, 24}, .exposure = 1.0f, .instancing = true};
+    w->settings = (gfx_settings){.grid = {16, 9, 24},
+                                 .first_slice = 5.0f,
+                                 .assign = GFX_CLUSTER_PER_LIGHT,
+                                 .exposure = 1.0f,
+                                 .instancing = true};
     const float ambient[3] = {0.32f, 0.36f, 0.42f}, background[3] = {0.11f, 0.14f, 0.18f};
     memcpy(w->ambient, ambient, sizeof ambient);
     memcpy(w->background, background, sizeof background);

@@ -1,0 +1,73 @@
+// Clustered light assignment: which point and spot lights reach which cell of a grid over the view.
+// Pure data, no GL. Olsson, Billeter, Assarsson, "Clustered Deferred and Forward Shading" (2012).
+//
+// The grid is columns x rows x slices over the view volume. Cell (i, j, k) has the number
+// (k * rows + j) * columns + i; row 0 is at the bottom, slice 0 at the camera. Every method gives
+// each cell an ascending list that holds each light whose sphere touches it.
+#ifndef GFX_CLUSTER_H
+#define GFX_CLUSTER_H
+
+#include "core/jobs.h"
+#include "core/math.h"
+
+enum { GFX_CLUSTER_SIDE = 64 }; // most columns, rows, slices
+
+typedef struct gfx_cluster_grid {
+    uint32_t columns, rows, slices;
+    bool linear;       // slices of equal depth, else exponential
+    bool orthographic; // tan_x, tan_y are then half extents in metres
+    float tan_x, tan_y;
+    float near_plane, far; // m: the slices' first and last bound
+    // slice of a depth = floor(along(depth) * scale + bias), along = depth or log2(depth), clamped
+    float scale, bias;
+    float depth[GFX_CLUSTER_SIDE + 1]; // bounds of the slices
+    float x[GFX_CLUSTER_SIDE + 1];     // bounds of the columns: x/depth, or x (orthographic)
+    float y[GFX_CLUSTER_SIDE + 1];
+} gfx_cluster_grid;
+
+// first_slice: depth (m) of the first slice's end, so that the rest are spent where lights are; 0
+// takes all slices from near_plane, z_k = near (far/near)^(k/slices). Ignored for linear slices.
+void gfx_cluster_grid_make(gfx_cluster_grid *grid, const uint32_t size[3], bool linear,
+                           float first_slice, bool orthographic, float tan_x, float tan_y,
+                           float near_plane, float far);
+static inline uint32_t gfx_cluster_cells(const gfx_cluster_grid *g) {
+    return g->columns * g->rows * g->slices;
+}
+// Cell of a point of the view (depth > 0) as the shader finds it: u, v in [0, 1) across the
+// picture.
+uint32_t gfx_cluster_cell(const gfx_cluster_grid *grid, float u, float v, float depth);
+
+// Bounding spheres of point and spot lights in view space: x right, y up, depth ahead. Radii carry
+// the margin for the rounding of everything that follows. Columns are 64-byte aligned and may be
+// read and written up to a multiple of CORE_LANES.
+typedef struct gfx_cluster_lights {
+    uint32_t count;
+    float *x, *y, *depth, *radius;
+    size_t capacity; // of each column, in lights; private
+} gfx_cluster_lights;
+// Makes room for `count` spheres. Contents are lost.
+void gfx_cluster_lights_reserve(gfx_cluster_lights *lights, uint32_t count);
+void gfx_cluster_lights_release(gfx_cluster_lights *lights);
+
+typedef enum gfx_cluster_method {
+    GFX_CLUSTER_NAIVE,     // every cell's box against every light: the reference
+    GFX_CLUSTER_PER_LIGHT, // exact bounds of each light in each slice, scalar
+    GFX_CLUSTER_METHODS
+} gfx_cluster_method;
+const char *gfx_cluster_method_name(gfx_cluster_method method);
+
+typedef struct gfx_clusters { // zero-initialise; keeps its memory between calls
+    uint32_t *offset;         // [cells + 1]: list of cell c is light[offset[c] .. offset[c + 1])
+    uint32_t *light;          // [total]
+    uint32_t total;
+    size_t offset_bytes, light_bytes;
+    void *scratch;
+    size_t scratch_bytes;
+} gfx_clusters;
+
+void gfx_clusters_assign(gfx_clusters *c, const gfx_cluster_grid *grid,
+                         const gfx_cluster_lights *lights, gfx_cluster_method method,
+                         core_jobs *jobs);
+void gfx_clusters_release(gfx_clusters *c);
+
+#endif
