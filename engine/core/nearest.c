@@ -1,6 +1,7 @@
 #include "core/nearest.h"
 
 #include <string.h>
+#include <strings.h>
 
 #define MOST 63
 
@@ -32,6 +33,17 @@ uint32_t core_name_distance(const char *a, const char *b) {
     return rows[n % 3][m];
 }
 
+// The first name that goes on where this one stops: people stop typing early.
+static const char *completion(const char *name, const char *const *names, size_t count) {
+    size_t length = strlen(name);
+    for (size_t i = 0; length >= 3 && i < count && names[i]; i++) {
+        if (strncasecmp(name, names[i], length) == 0) {
+            return names[i];
+        }
+    }
+    return NULL;
+}
+
 const char *core_nearest(const char *name, const char *const *names, size_t count) {
     const char *best = NULL;
     uint32_t least = UINT32_MAX;
@@ -43,5 +55,6 @@ const char *core_nearest(const char *name, const char *const *names, size_t coun
         }
     }
     size_t longer = best ? CORE_MAX(strlen(name), strlen(best)) : 0;
-    return best && (least <= 2 || least * 3 <= longer) && least < longer ? best : NULL;
+    bool near = best && (least <= 2 || least * 3 <= longer) && least < longer;
+    return near ? best : completion(name, names, count);
 }

@@ -25,6 +25,14 @@ static void nearest_of_a_list(void) {
     TEST_ASSERT_NULL(core_nearest("steps", names, 0));
 }
 
+static void a_beginning_is_completed(void) {
+    const char *names[] = {"energy_j", "penetration_mean_m", "penetration_max_m"};
+    TEST_ASSERT_EQUAL_STRING("penetration_mean_m", core_nearest("Penetration", names, 3));
+    TEST_ASSERT_EQUAL_STRING("penetration_max_m", core_nearest("penetration_max", names, 3));
+    TEST_ASSERT_NULL(core_nearest("pe", names, 3));
+    TEST_ASSERT_NULL(core_nearest("", names, 3));
+}
+
 static void long_names_are_safe(void) {
     char a[300], b[300];
     for (int i = 0; i < 299; i++) {
@@ -40,6 +48,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(distances);
     RUN_TEST(nearest_of_a_list);
+    RUN_TEST(a_beginning_is_completed);
     RUN_TEST(long_names_are_safe);
     return UNITY_END();
 }
