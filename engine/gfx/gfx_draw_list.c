@@ -115,7 +115,14 @@ bool gfx_draw_list_build(gfx_device *d, gfx_world *world, const gfx_view *view) 
     uint32_t total = core_columns_count(&world->instances.set);
     d->visible.count = d->batches.count = 0;
     uint32_t *rows = gfx_grow(&d->visible, sizeof *rows, total);
-    uint32_t bones, visible = gfx_cull(&world->instances, view, rows);
+    uint32_t bones, visible = total;
+    if (world->settings.culling) {
+        visible = gfx_cull(&world->instances, view, rows);
+    } else {
+        for (uint32_t i = 0; i < total; ++i) {
+            rows[i] = i;
+        }
+    }
     uint32_t count = make_keys(d, world, rows, visible, &bones);
     const gfx_sort_key *keys = d->keys.data;
     list_writer w = {
