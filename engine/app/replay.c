@@ -6,6 +6,7 @@
 #include "app/journal.h"
 #include "app/journal_layout.h"
 #include "core/file.h"
+#include "core/json.h"
 
 typedef struct cursor {
     const uint8_t *data;
@@ -57,13 +58,24 @@ static uint32_t take_count(cursor *c, uint32_t most) {
     return c->bad ? 0 : count;
 }
 
+// Texts end up in messages: UTF-8 without control characters.
+static bool text_ok(const char *s, size_t length) {
+    for (size_t i = 0, step; i < length; i += step) {
+        step = core_utf8_length(s + i);
+        if (!step || (uint8_t)s[i] < 32 || s[i] == 127) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static void take_text(cursor *c, char *out, size_t size) {
     uint32_t length = take_count(c, (uint32_t)size - 1);
     const void *p = take(c, length);
     if (p) {
         memcpy(out, p, length);
         out[length] = 0;
-        c->bad |= memchr(p, 0, length) != NULL;
+        c->bad |= !text_ok(out, length);
     }
 }
 
@@ -218,10 +230,9 @@ static uint32_t first_row(app_replay *r, const set_block *b, const core_columns 
     return b->rows;
 }
 
-static bool check_set(app_replay *r, const set_block *b, const core_columns *set, const scene *s) {
+static bool check_shape(const app_replay *r, const set_block *b, const core_columns *set) {
     unsigned long long step = r->done + 1;
-    uint64_t column[CORE_COLUMNS_MAX];
-    uint32_t number[CORE_COLUMNS_MAX], columns = app_journal_columns(set, number);
+    uint32_t columns = app_journal_columns(set, NULL);
     if (strcmp(b->name, set->name) != 0 || b->columns != columns) {
         return core_fail(
             "replay diverged at step %llu: the recording has '%s' with %u columns, this "
@@ -232,15 +243,43 @@ static bool check_set(app_replay *r, const set_block *b, const core_columns *set
         return core_fail("replay diverged at step %llu: %s has %u rows, the recording %u", step,
                          set->name, core_columns_count(set), b->rows);
     }
+    return true;
+}
+
+static bool check_columns(app_replay *r, const set_block *b, const core_columns *set,
+                          const scene *s) {
+    uint64_t column[CORE_COLUMNS_MAX];
+    uint32_t number[CORE_COLUMNS_MAX], columns = app_journal_columns(set, number);
     core_columns_hash(set, column);
-    for (uint32_t i = 0; i < b->columns; i++) {
+    for (uint32_t i = 0; i < columns; i++) {
         uint64_t was;
         memcpy(&was, b->column_hash + i * sizeof was, sizeof was);
         if (was != column[number[i]]) {
             char object[192];
             scene_describe_row(s, set, first_row(r, b, set), object, sizeof object);
-            return core_fail("replay diverged at step %llu: %s, column %s", step, object,
-                             set->column[number[i]].name);
+            return core_fail("replay diverged at step %llu: %s, column %s",
+                             (unsigned long long)r->done + 1, object, set->column[number[i]].name);
+        }
+    }
+    return true;
+}
+
+// Objects that came or went explain more than the values that follow from it: all shapes first.
+static bool check_sets(app_replay *r, const set_block *block, uint32_t recorded,
+                       const core_columns *const *set, uint32_t sets, const scene *s) {
+    for (uint32_t i = 0; i < CORE_MIN(recorded, sets); i++) {
+        if (!check_shape(r, &block[i], set[i])) {
+            return false;
+        }
+    }
+    if (recorded != sets) {
+        return core_fail(
+            "replay diverged at step %llu: this run has %u column sets, the recording %u",
+            (unsigned long long)r->done + 1, sets, recorded);
+    }
+    for (uint32_t i = 0; i < sets; i++) {
+        if (!check_columns(r, &block[i], set[i], s)) {
+            return false;
         }
     }
     return true;
@@ -248,20 +287,13 @@ static bool check_set(app_replay *r, const set_block *b, const core_columns *set
 
 bool app_replay_check(app_replay *r, const scene *s) {
     const core_columns *set[JOURNAL_MAX_SETS];
+    set_block block[JOURNAL_MAX_SETS];
     uint32_t sets = (uint32_t)CORE_MIN(scene_state(s, set, JOURNAL_MAX_SETS), JOURNAL_MAX_SETS);
     uint32_t recorded = take_count(&r->next, JOURNAL_MAX_SETS);
-    bool ok = true;
     for (uint32_t i = 0; i < recorded; i++) {
-        set_block b = take_set(&r->next);
-        if (ok && i < sets) {
-            ok = check_set(r, &b, set[i], s);
-        }
+        block[i] = take_set(&r->next);
     }
-    if (ok && recorded != sets) {
-        ok =
-            core_fail("replay diverged at step %llu: this run has %u column sets, the recording %u",
-                      (unsigned long long)r->done + 1, sets, recorded);
-    }
+    bool ok = check_sets(r, block, recorded, set, sets, s);
     r->done++;
     return ok;
 }

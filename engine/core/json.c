@@ -42,9 +42,8 @@ static void new_line(core_json *j) {
     }
 }
 
-// Bytes of the UTF-8 sequence at s, 0 when it is none (RFC 3629: shortest form, no surrogates, at
-// most U+10FFFF).
-static size_t utf8_length(const uint8_t *s) {
+size_t core_utf8_length(const char *text) {
+    const uint8_t *s = (const uint8_t *)text;
     if (s[0] < 0x80) {
         return 1;
     }
@@ -80,7 +79,7 @@ static void append_control(core_json *j, uint8_t c) {
 static void append_quoted(core_json *j, const char *utf8) {
     append(j, "\"", 1);
     for (const uint8_t *s = (const uint8_t *)utf8; *s;) {
-        size_t length = utf8_length(s);
+        size_t length = core_utf8_length((const char *)s);
         if (length == 0) {
             append_text(j, "\xef\xbf\xbd"); // U+FFFD
             length = 1;

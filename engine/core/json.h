@@ -26,6 +26,10 @@ void core_json_bool(core_json *j, const char *key, bool value);
 void core_json_null(core_json *j, const char *key);
 void core_json_string(core_json *j, const char *key, const char *utf8);
 
+// Bytes of the UTF-8 sequence at s, 0 when it is none (RFC 3629: shortest form, no surrogates, at
+// most U+10FFFF). Reads no further than a terminating zero.
+size_t core_utf8_length(const char *s);
+
 // The number's text alone (tables, CSV). Returns its length.
 #define CORE_JSON_NUMBER_MAX 32
 size_t core_json_format(double value, char out[CORE_JSON_NUMBER_MAX]);
