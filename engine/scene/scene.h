@@ -103,6 +103,10 @@ bool scene_set_scale(scene *s, scene_entity e, core_vec3 v);
 // simulation state. No-op without gfx.
 void scene_sync_draw(scene *s, float alpha);
 
+// The pose that scene_sync_draw shows: for cameras and listeners that follow an entity. False when
+// stale. Previous poses are kept only once something is drawn (scene_gfx).
+bool scene_draw_pose(const scene *s, scene_entity e, float alpha, core_vec3 *p, core_quat *q);
+
 // Column sets of all rooms in a fixed order, for hash, save and divergence reports.
 int scene_state(const scene *s, const core_columns **out, int capacity);
 uint64_t scene_hash(const scene *s);

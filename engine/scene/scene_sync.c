@@ -54,6 +54,25 @@ void scene_pull_bodies(scene *s) {
     }
 }
 
+static void draw_pose(const scene_entities *e, uint32_t row, float alpha, core_vec3 *p,
+                      core_quat *q) {
+    core_vec3 old = {e->opx[row], e->opy[row], e->opz[row]};
+    core_vec3 now = {e->wpx[row], e->wpy[row], e->wpz[row]};
+    core_quat old_q = {e->oqx[row], e->oqy[row], e->oqz[row], e->oqw[row]};
+    core_quat now_q = {e->wqx[row], e->wqy[row], e->wqz[row], e->wqw[row]};
+    *p = core_v3_mad(old, core_v3_sub(now, old), alpha);
+    *q = core_quat_nlerp(old_q, now_q, alpha);
+}
+
+bool scene_draw_pose(const scene *s, scene_entity e, float alpha, core_vec3 *p, core_quat *q) {
+    uint32_t row = scene_row(s, e);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    draw_pose(&s->entity, row, alpha, p, q);
+    return true;
+}
+
 void scene_sync_draw(scene *s, float alpha) {
     if (!s->gfx) {
         return;
@@ -65,12 +84,9 @@ void scene_sync_draw(scene *s, float alpha) {
         if (core_handle_is_null(e->instance[row])) {
             continue;
         }
-        core_vec3 old = {e->opx[row], e->opy[row], e->opz[row]};
-        core_vec3 now = {e->wpx[row], e->wpy[row], e->wpz[row]};
-        core_quat old_q = {e->oqx[row], e->oqy[row], e->oqz[row], e->oqw[row]};
-        core_quat now_q = {e->wqx[row], e->wqy[row], e->wqz[row], e->wqw[row]};
-        core_vec3 p = core_v3_mad(old, core_v3_sub(now, old), alpha);
-        core_quat q = core_quat_nlerp(old_q, now_q, alpha);
+        core_vec3 p;
+        core_quat q;
+        draw_pose(e, row, alpha, &p, &q);
         core_vec3 size = {e->wsx[row] * e->dx[row], e->wsy[row] * e->dy[row],
                           e->wsz[row] * e->dz[row]};
         gfx_instance_set_transform(s->gfx, e->instance[row], p, q, size);
