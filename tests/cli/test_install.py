@@ -38,7 +38,7 @@ def run(command, **options):
     clean = {k: v for k, v in os.environ.items() if not k.startswith("MAKE") and k != "MFLAGS"}
     clean.update(options.pop("env", {}))
     return subprocess.run([str(word) for word in command], env=clean, stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300, **options)
+                          capture_output=True, text=True, timeout=300, **options)
 
 
 class Install(unittest.TestCase):
@@ -50,13 +50,13 @@ class Install(unittest.TestCase):
         cls.prefix = cls.stage / "opt/corsac"
         done = run(["make", "-C", ROOT, "install", f"DESTDIR={cls.stage}", "PREFIX=/opt/corsac"])
         if done.returncode != 0:
-            raise AssertionError(done.stdout)
+            raise AssertionError(done.stdout + done.stderr)
 
     def test_program_runs_from_elsewhere(self):
         scene = self.prefix / "share/corsac/scripts/scenes/hello.lua"
         done = run([self.prefix / "bin/corsac", "run", scene, "--headless", "--steps", 10, "--hash"],
                    cwd=self.stage)
-        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"\A[0-9a-f]{16}\n\Z")
 
     def test_c_program_needs_only_libm_and_threads(self):
@@ -65,9 +65,9 @@ class Install(unittest.TestCase):
         done = run(["gcc", "-std=c17", "-Wall", "-Wextra", "-Werror", source,
                     "-I", self.prefix / "include/corsac", self.prefix / "lib/libcorsac.a",
                     "-lm", "-lpthread", "-o", self.stage / "ball"])
-        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual(done.returncode, 0, done.stderr)
         done = run([self.stage / "ball"])
-        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual(done.returncode, 0, done.stderr)
         # Free fall for 1 s: g/2 for the exact path, up to g dt/2 more for symplectic Euler.
         fallen = 10 - float(done.stdout)
         self.assertGreaterEqual(fallen, 4.905 - 0.001)

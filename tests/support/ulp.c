@@ -59,7 +59,8 @@ static double signed_power(core_rng *rng, double low, double high) {
 
 // A double within two steps of a multiple of pi/2, of any size up to 2^50.
 static double near_quadrant(core_rng *rng) {
-    uint64_t k = core_rng_u64(rng) >> (14 + core_rng_below(rng, 50));
+    uint64_t k = core_rng_u64(rng); // two statements: operands of >> have no order
+    k >>= 14 + core_rng_below(rng, 50);
     double x = (double)((long double)k * 1.57079632679489661923132169163975144L);
     for (int steps = (int)core_rng_below(rng, 5) - 2; steps; steps += steps < 0 ? 1 : -1) {
         x = nextafter(x, steps < 0 ? -INFINITY : INFINITY);
