@@ -49,7 +49,7 @@ endif
 include tools/build.mk
 
 ##@ Use
-.PHONY: help run play bench
+.PHONY: help run play bench lab
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ { print "\n" substr($$0, 5) } /^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 
@@ -64,6 +64,10 @@ play: all ## the same scene in a window
 
 bench: all ## ms per step for 500 to 10,000 spheres -> out/bench.json
 	@python3 tools/bench.py --corsac $(OUT)/corsac
+
+lab: all ## speed against accuracy, charted -> out/lab/report.html; LAB=quick: under 5 minutes
+	@tools/setup.sh lab
+	@$(OUT)/corsac lab $(if $(filter quick,$(LAB)),--quick)
 
 ##@ Check
 .PHONY: test test-long lint fmt

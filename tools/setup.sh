@@ -53,6 +53,7 @@ build file:/usr/lib*/dri/swrast_dri.so libgl1-mesa-dri
 build file:/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf fonts-dejavu-core
 build file:/etc/ssl/cert*.pem|/etc/ssl/certs/ca-certificates.crt ca-certificates
 build venv: python3-venv
+lab venv: python3-venv
 window cmd:xvfb-run xvfb
 window cmd:xauth xauth
 clang cmd:clang clang
@@ -257,6 +258,16 @@ unity() {
     echo "/* Unity's options come from the command line. */" >build/gen/examples/unity_config.h
 }
 
+# matplotlib and Dask for the lab, pinned; the stamp holds what was asked for.
+lab() {
+    install_missing lab
+    venv
+    cmp -s tools/lab/requirements.txt build/venv/lab-requirements.txt && return
+    say "fetching what the lab draws and spreads with"
+    pip install -r tools/lab/requirements.txt || fail_with_log "cannot fetch the lab's Python packages"
+    cp tools/lab/requirements.txt build/venv/lab-requirements.txt
+}
+
 case ${1:-build} in
 build)
     install_missing build
@@ -266,9 +277,10 @@ gen)
     loaders
     unity
     ;;
+lab) lab ;;
 window | clang | lint) install_missing build "$@" ;;
 *)
-    say "unknown group $1; known: build gen window clang lint"
+    say "unknown group $1; known: build gen lab window clang lint"
     exit 2
     ;;
 esac
