@@ -64,7 +64,11 @@ bool app_frame(app_run *r, float alpha) {
         error_screen(r, world);
     }
     r->report.frames++;
-    return gfx_device_render(r->device, world) || app_fail(r, APP_EXIT_ENVIRONMENT);
+    bool ok = gfx_device_render(r->device, world);
+    gfx_device_use use = gfx_device_used(r->device);
+    r->report.passes = use.passes;
+    r->report.shader_variants = use.shader_variants;
+    return ok || app_fail(r, APP_EXIT_ENVIRONMENT);
 }
 
 static bool shot_due(const app_run *r, const app_shot *shot, uint64_t step) {

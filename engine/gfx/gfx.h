@@ -177,5 +177,10 @@ typedef struct gfx_event {
 bool gfx_device_poll(gfx_device *device, gfx_event *out);
 const char *gfx_device_name(const gfx_device *device); // GL_RENDERER
 bool gfx_device_software(const gfx_device *device);
+// What the receipt shows: passes of the last frame, shader variants made so far.
+typedef struct gfx_device_use {
+    uint32_t passes, shader_variants;
+} gfx_device_use;
+gfx_device_use gfx_device_used(const gfx_device *device);
 
 #endif

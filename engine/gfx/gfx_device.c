@@ -200,6 +200,9 @@ bool gfx_device_reload(gfx_device *device) {
 }
 
 const char *gfx_device_name(const gfx_device *device) { return device->name; }
+gfx_device_use gfx_device_used(const gfx_device *device) {
+    return (gfx_device_use){.passes = device->passes, .shader_variants = device->shaders.count};
+}
 bool gfx_device_software(const gfx_device *device) { return device->software; }
 
 // Turns the picture upside down in place: GL's first row is the lowest.

@@ -77,6 +77,7 @@ static void upload_materials(gfx_device *d, const gfx_world *world) {
 // ---- passes ----
 
 static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
+    d->passes++;
     const float *c = world->background;
     const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
     glBindFramebuffer(GL_FRAMEBUFFER, d->hdr_target);
@@ -92,6 +93,7 @@ static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
 }
 
 static bool pass_tonemap(gfx_device *d) {
+    d->passes++;
     GLuint program = gfx_shaders_get(&d->shaders, "fullscreen.vert", "tonemap.frag", 0);
     if (!program) {
         return false;
@@ -132,6 +134,7 @@ bool gfx_device_render(gfx_device *device, gfx_world *world) {
     gfx_device *d = device;
     uint32_t errors = d->gl_errors;
     world->stats = (gfx_frame_stats){0};
+    d->passes = 0;
     if (world->settings.render == GFX_RENDER_NONE) {
         return true;
     }

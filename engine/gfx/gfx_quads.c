@@ -112,6 +112,7 @@ bool gfx_quads_draw(gfx_device *d, const gfx_world *world) {
     if (world->commands.count == 0) {
         return true;
     }
+    d->passes++;
     q->quads.count = q->runs.count = 0;
     if (q->font) {
         gfx_font_begin_frame(q->font);

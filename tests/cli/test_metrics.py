@@ -128,6 +128,8 @@ class Metrics(SceneCase):
         used = self.run_scene(BALLS, "--steps", 10, "--receipt", "--set", "n=3")
         self.assertRegex(used.out, re.compile(r"^ +phys +[1-9][0-9]+ ", re.M))
         self.assertIn("bodies 4", used.out)
+        drawn = self.run_scene(BALLS, "--steps", 2, "--receipt", "--shot", self.dir / "a.png", "--size", "64x64")
+        self.assertRegex(drawn.out, r"frames 1, passes [1-9]\d*, shader variants [1-9]")
 
 
 if __name__ == "__main__":
