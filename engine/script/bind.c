@@ -214,11 +214,12 @@ static double check_number(bind_path *path, const bind_arg *arg, int index) {
         expected(path, arg, index);
     }
     double v = lua_tonumber(path->L, index);
-    bool good = isfinite(v) && (arg->range != BIND_POSITIVE || v > 0) &&
-                (arg->range != BIND_NOT_NEGATIVE || v >= 0) &&
-                (arg->range != BIND_BETWEEN || (v >= arg->min && v <= arg->max)) &&
-                (arg->kind != BIND_INT || (v == floor(v) && fabs(v) <= 9007199254740992.0)) &&
-                (arg->kind != BIND_FLOAT || fabs(v) <= 3.4028234663852886e38);
+    bool good =
+        isfinite(v) && (arg->range != BIND_POSITIVE || v > 0) &&
+        (arg->range != BIND_NOT_NEGATIVE || v >= 0) &&
+        (arg->range != BIND_BETWEEN || (v >= arg->min && v <= arg->max)) &&
+        (arg->kind != BIND_INT || (v == floor(v) && fabs(v) <= 9007199254740992.0)) &&
+        ((arg->kind != BIND_FLOAT && arg->kind != BIND_VEC3) || fabs(v) <= 3.4028234663852886e38);
     if (!good) {
         expected(path, arg, index);
     }
@@ -411,11 +412,13 @@ static void check_list(bind_path *path, const bind_arg *arg, int index, bind_lis
     out->count = (uint32_t)lua_objlen(L, index);
     out->items = lua_newuserdata(L, out->count * arg->size + 1);
     memset(out->items, 0, out->count * arg->size);
+    bind_arg item = *arg;
+    item.kind = BIND_OPTIONS;
     size_t depth = strlen(path->field);
     for (uint32_t i = 0; i < out->count; i++) {
         snprintf(path->field + depth, sizeof path->field - depth, "%s%u", depth ? "." : "", i + 1);
         lua_rawgeti(L, index, (int)i + 1);
-        check_options(path, arg, lua_gettop(L), (unsigned char *)out->items + i * arg->size);
+        check_options(path, &item, lua_gettop(L), (unsigned char *)out->items + i * arg->size);
     }
     path->field[depth] = 0;
 }
