@@ -55,6 +55,10 @@ double anim_world_error_max(anim_world *world, uint32_t sample);
 anim_skeleton anim_skeleton_create(anim_world *world, const core_skeleton_data *data);
 // False while clips or instances use it.
 bool anim_skeleton_destroy(anim_world *world, anim_skeleton skeleton);
+bool anim_skeleton_alive(const anim_world *world, anim_skeleton skeleton);
+// Bind pose of one bone; time is 0.
+bool anim_skeleton_bind(const anim_world *world, anim_skeleton skeleton, uint32_t bone,
+                        core_key *out);
 uint32_t anim_skeleton_bone_count(const anim_world *world, anim_skeleton skeleton); // 0: stale
 // Bone by name, -1 when there is none.
 int32_t anim_skeleton_find(const anim_world *world, anim_skeleton skeleton, const char *name);
@@ -85,6 +89,7 @@ anim_clip_desc anim_clip_desc_default(void);
 // numbers, zero quaternions and durations that are not > 0.
 anim_clip anim_clip_create(anim_world *world, const anim_clip_desc *desc);
 bool anim_clip_destroy(anim_world *world, anim_clip clip);
+bool anim_clip_alive(const anim_world *world, anim_clip clip);
 const char *anim_clip_name(const anim_world *world, anim_clip clip);
 float anim_clip_duration(const anim_world *world, anim_clip clip); // seconds; 0: stale
 anim_clip anim_clip_find(const anim_world *world, anim_skeleton skeleton, const char *name);
@@ -188,6 +193,7 @@ anim_machine_desc anim_machine_desc_default(void);
 // All clips must be of one skeleton. Errors name the state or transition and the nearest name.
 anim_machine anim_machine_create(anim_world *world, const anim_machine_desc *desc);
 bool anim_machine_destroy(anim_world *world, anim_machine machine); // false while in use
+bool anim_machine_alive(const anim_world *world, anim_machine machine);
 // Graphviz text of the machine; core_free it. `instance` (null: none) marks its present state.
 char *anim_machine_dot(const anim_world *world, anim_machine machine, anim_instance instance);
 
@@ -213,6 +219,7 @@ anim_instance anim_instance_create(anim_world *world, const anim_instance_desc *
 bool anim_instance_destroy(anim_world *world, anim_instance instance);
 bool anim_instance_alive(const anim_world *world, anim_instance instance);
 uint64_t anim_instance_user(const anim_world *world, anim_instance instance);
+bool anim_instance_set_user(anim_world *world, anim_instance instance, uint64_t user);
 uint32_t anim_instance_bone_count(const anim_world *world, anim_instance instance);
 anim_skeleton anim_instance_skeleton(const anim_world *world, anim_instance instance);
 

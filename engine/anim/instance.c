@@ -153,6 +153,15 @@ uint64_t anim_instance_user(const anim_world *w, anim_instance h) {
     return row == CORE_NO_ROW ? 0 : w->instances.user[row];
 }
 
+bool anim_instance_set_user(anim_world *w, anim_instance h, uint64_t user) {
+    uint32_t row = anim_get_instance(w, h);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    w->instances.user[row] = user;
+    return true;
+}
+
 anim_skeleton anim_instance_skeleton(const anim_world *w, anim_instance h) {
     uint32_t row = anim_get_instance(w, h);
     return row == CORE_NO_ROW ? CORE_NULL_HANDLE : w->instances.skeleton[row];

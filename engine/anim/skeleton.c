@@ -152,3 +152,17 @@ uint32_t anim_skeleton_children(const anim_world *w, anim_skeleton h, uint32_t b
     }
     return n;
 }
+
+bool anim_skeleton_bind(const anim_world *w, anim_skeleton h, uint32_t bone, core_key *out) {
+    const anim_skeleton_res *s = anim_get_skeleton(w, h);
+    if (!s || bone >= s->bones) {
+        return s && core_fail("anim_skeleton_bind: bone %u of %u", bone, s->bones);
+    }
+    const float *v = s->bind + bone;
+    const uint32_t n = s->stride;
+    *out = (core_key){0,
+                      {v[ANIM_TX * n], v[ANIM_TY * n], v[ANIM_TZ * n]},
+                      {v[ANIM_RX * n], v[ANIM_RY * n], v[ANIM_RZ * n], v[ANIM_RW * n]},
+                      {v[ANIM_SX * n], v[ANIM_SY * n], v[ANIM_SZ * n]}};
+    return true;
+}

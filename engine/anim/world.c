@@ -134,6 +134,16 @@ anim_machine_res *anim_get_machine(const anim_world *w, anim_machine h) {
     return get(&w->machines, h, "state machine");
 }
 
+bool anim_skeleton_alive(const anim_world *w, anim_skeleton h) {
+    return core_columns_row(&w->skeletons.set, h) != CORE_NO_ROW;
+}
+bool anim_clip_alive(const anim_world *w, anim_clip h) {
+    return core_columns_row(&w->clips.set, h) != CORE_NO_ROW;
+}
+bool anim_machine_alive(const anim_world *w, anim_machine h) {
+    return core_columns_row(&w->machines.set, h) != CORE_NO_ROW;
+}
+
 uint32_t anim_get_instance(const anim_world *w, anim_instance h) {
     uint32_t row = core_columns_row(&w->instances.set, h);
     if (row == CORE_NO_ROW || (w->instances.flags[row] & ANIM_DOOMED)) {

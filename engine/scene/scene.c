@@ -59,6 +59,8 @@ void scene_destroy(scene *s) {
     if (!s) {
         return;
     }
+    scene_models_destroy(s);
+    anim_world_destroy(s->anim);
     if (s->phys) {
         phys_world_destroy(s->phys);
     }
@@ -79,7 +81,7 @@ void scene_set_hooks(scene *s, const scene_hooks *hooks) {
 }
 
 bool scene_configure(scene *s, core_jobs *jobs, uint64_t seed, float dt) {
-    if (s->phys || s->gfx || scene_step_index(s) || scene_entity_count(s)) {
+    if (s->phys || s->gfx || s->anim || scene_step_index(s) || scene_entity_count(s)) {
         return core_fail("scene: workers, seed and dt are fixed once the scene has begun; set them "
                          "in corsac.conf or on the command line");
     }
@@ -167,6 +169,8 @@ static bool try_setting(const scene *s, const char *room, const char *name, cons
         if (world != s->phys) {
             phys_world_destroy(world);
         }
+    } else if (strcmp(room, "anim") == 0) {
+        ok = anim_world_set(s->anim, name, value);
     } else {
         gfx_world *world = s->gfx ? s->gfx : make_gfx(s, 64);
         ok = world && gfx_world_set(world, name, value);
@@ -190,8 +194,9 @@ bool scene_setting(scene *s, const char *name, const char *value) {
     strcpy(kept.name, dot + 1);
     strcpy(kept.value, value);
     if (strcmp(kept.room, "phys") != 0 && strcmp(kept.room, "gfx") != 0) {
-        return core_fail("setting '%s': no settings for '%s'; rooms with settings are phys and gfx",
-                         name, kept.room);
+        return core_fail(
+            "setting '%s': no settings for '%s'; rooms with settings are phys, gfx and anim", name,
+            kept.room);
     }
     if (!try_setting(s, kept.room, kept.name, kept.value)) {
         return false;
@@ -225,6 +230,7 @@ bool scene_step(scene *s) {
         core_stage_end(s->metrics, CORE_STAGE_SCRIPT);
     }
     bool ok = true;
+    scene_anim_update(s);
     if (s->phys) {
         ok = phys_world_step(s->phys, s->dt);
     }
@@ -237,6 +243,7 @@ bool scene_step(scene *s) {
         s->hooks.events(s->hooks.ctx);
         core_stage_end(s->metrics, CORE_STAGE_SCRIPT);
     }
+    scene_anim_pose(s);
     s->clock.step[0]++;
     return ok;
 }
@@ -257,6 +264,10 @@ int scene_state(const scene *s, const core_columns **out, int capacity) {
     if (s->phys) {
         int room = capacity > count ? capacity - count : 0;
         count += phys_world_state(s->phys, out && room ? out + count : NULL, room);
+    }
+    if (s->anim) {
+        int room = capacity > count ? capacity - count : 0;
+        count += anim_world_state(s->anim, out && room ? out + count : NULL, room);
     }
     return count;
 }
@@ -309,6 +320,9 @@ void scene_counts(const scene *s) {
     if (s->gfx) {
         gfx_world_counts(s->gfx, s->metrics);
     }
+    if (s->anim) {
+        anim_world_counts(s->anim, s->metrics);
+    }
 }
 
 scene_memory scene_memory_use(const scene *s) {
@@ -319,5 +333,6 @@ scene_memory scene_memory_use(const scene *s) {
              (s->setting ? sizeof *s->setting * SCENE_MAX_SETTINGS : 0);
     m.phys = s->phys ? phys_world_bytes(s->phys) : 0;
     m.gfx = s->gfx ? gfx_world_bytes(s->gfx) : 0;
+    m.anim = s->anim ? anim_world_bytes(s->anim) : 0;
     return m;
 }

@@ -3,6 +3,7 @@
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
+#include "anim/anim.h"
 #include "core/columns.h"
 #include "core/jobs.h"
 #include "core/metrics.h"
@@ -46,6 +47,8 @@ phys_world *scene_phys(scene *s);
 phys_world *scene_phys_if(const scene *s);
 gfx_world *scene_gfx(scene *s);
 gfx_world *scene_gfx_if(const scene *s);
+anim_world *scene_anim(scene *s);
+anim_world *scene_anim_if(const scene *s);
 core_metrics *scene_metrics(const scene *s);
 core_vfs *scene_vfs(const scene *s);
 core_rng *scene_rng(scene *s, uint64_t stream); // CORE_RNG_SIM, CORE_RNG_VIEW
@@ -62,6 +65,19 @@ bool scene_step(scene *s);
 uint64_t scene_step_index(const scene *s); // steps done
 float scene_dt(const scene *s);
 
+// ---- models ----
+// Reads a .cmodel and what it names (meshes, materials, skeleton, clips) into the rooms; the same
+// path gives the same model again. Null + core_fail when any part is missing or bad: then nothing
+// stays loaded.
+typedef core_handle scene_model;
+scene_model scene_model_load(scene *s, const char *path);
+bool scene_model_alive(const scene *s, scene_model model);
+anim_skeleton scene_model_skeleton(const scene *s, scene_model model); // null without one
+uint32_t scene_model_clip_count(const scene *s, scene_model model);
+anim_clip scene_model_clip(const scene *s, scene_model model, uint32_t i);
+// By name; null + core_fail naming the nearest.
+anim_clip scene_model_find_clip(const scene *s, scene_model model, const char *name);
+
 typedef struct scene_spawn_desc {
     core_vec3 position; // m; relative to the parent
     core_quat rotation; // zero: identity; relative to the parent
@@ -75,6 +91,12 @@ typedef struct scene_spawn_desc {
     gfx_instance_desc *draw; // NULL: not drawn
     core_vec3 draw_scale;    // size of the unit mesh; zero: 1
     const char *name;        // NULL: none; need not be unique
+    // A model made by scene_model_load: its first mesh on the entity, further ones on children.
+    // With a skeleton the entity gets an animation instance that plays machine, clip or the bind
+    // pose. Excludes `draw`.
+    scene_model model;
+    anim_machine machine;
+    anim_clip clip;
     uint32_t cookie;
 } scene_spawn_desc;
 scene_spawn_desc scene_spawn_desc_default(void);
@@ -85,6 +107,11 @@ uint32_t scene_entity_count(const scene *s);
 phys_body scene_entity_body(const scene *s, scene_entity e);
 gfx_instance scene_entity_instance(const scene *s, scene_entity e);
 scene_entity scene_entity_of_body(const scene *s, phys_body body);
+anim_instance scene_entity_anim(const scene *s, scene_entity e); // null: not animated
+scene_entity scene_entity_of_anim(const scene *s, anim_instance instance);
+// Gives the entity an animation instance (destroyed with it). Its meshes follow the palette; root
+// motion moves the entity, or sets the horizontal velocity of its body.
+bool scene_set_anim(scene *s, scene_entity e, anim_instance instance);
 const char *scene_entity_name(const scene *s, scene_entity e); // "" when it has none or is stale
 scene_entity scene_find(const scene *s, const char *name);     // oldest with that name, or null
 scene_entity scene_parent(const scene *s, scene_entity e);

@@ -93,6 +93,7 @@ static void remove_entity(scene *s, scene_entity self) {
     if (s->phys && phys_body_alive(s->phys, e->body[row])) {
         phys_body_destroy(s->phys, e->body[row]);
     }
+    scene_anim_leave(s, row);
     if (!core_handle_is_null(e->instance[row])) {
         gfx_instance_destroy(s->gfx, e->instance[row]);
     }
@@ -131,8 +132,8 @@ scene_entity scene_spawn(scene *s, const scene_spawn_desc *d) {
     scene_world_of(s, row);
     scene_interpolation_reset(s, row);
     if ((d->body && !add_body(s, row, d)) || (d->draw && !add_draw(s, row, d)) ||
-        (d->name && d->name[0] && !add_name(s, row, d->name))) {
-        remove_entity(s, self);
+        (d->name && d->name[0] && !add_name(s, row, d->name)) || !scene_add_model(s, row, d)) {
+        scene_despawn(s, self);
         return CORE_NULL_HANDLE;
     }
     return self;

@@ -25,6 +25,8 @@
     X(uint32_t, depth, CORE_COLUMN_STATE)                                                          \
     X(core_handle, body, CORE_COLUMN_STATE)                                                        \
     X(core_handle, name, CORE_COLUMN_STATE)                                                        \
+    X(core_handle, anim, CORE_COLUMN_STATE) /* owned */                                            \
+    X(core_handle, skin, 0)                 /* whose palette its mesh follows */                   \
     X(float, wpx, 0)                                                                               \
     X(float, wpy, 0)                                                                               \
     X(float, wpz, 0)                                                                               \
@@ -67,6 +69,8 @@ typedef struct scene_kept_setting { // given before its room was made
 } scene_kept_setting;
 #define SCENE_MAX_SETTINGS 128
 
+typedef struct scene_models scene_models;
+
 struct scene {
     core_jobs *jobs;
     core_metrics *metrics;
@@ -80,6 +84,8 @@ struct scene {
     core_rng view_rng;
     phys_world *phys;
     gfx_world *gfx;
+    anim_world *anim;
+    scene_models *models;        // made with the first one
     scene_kept_setting *setting; // [SCENE_MAX_SETTINGS], made with the first one
     uint32_t setting_count;
     uint32_t *order; // rows with a parent, parents before children; rebuilt when links change
@@ -98,6 +104,22 @@ void scene_local_from_world(scene *s, uint32_t row); // the inverse
 void scene_world_of_children(scene *s);              // all rows with a parent, parents first
 void scene_subtree_moved(scene *s, scene_entity e);  // worlds below e; interpolation reset
 void scene_interpolation_reset(scene *s, uint32_t row);
+// scene_anim.c
+void scene_anim_update(scene *s); // state machines and root motion, before physics
+void scene_anim_pose(scene *s);   // palettes, after physics
+void scene_anim_sync(scene *s);   // palettes into gfx
+void scene_anim_leave(scene *s, uint32_t row);
+bool scene_add_model(scene *s, uint32_t row, const scene_spawn_desc *d);
+// scene_model.c
+void scene_models_destroy(scene *s);
+typedef struct scene_model_view {
+    uint32_t mesh_count;
+    const gfx_mesh *mesh;
+    const gfx_material *material; // [mesh_count] null: default
+    const bool *skinned;
+    anim_skeleton skeleton;
+} scene_model_view;
+bool scene_model_look(const scene *s, scene_model model, scene_model_view *out);
 // scene_sync.c
 void scene_keep_previous(scene *s);
 void scene_pull_bodies(scene *s);

@@ -91,5 +91,6 @@ void scene_sync_draw(scene *s, float alpha) {
                           e->wsz[row] * e->dz[row]};
         gfx_instance_set_transform(s->gfx, e->instance[row], p, q, size);
     }
+    scene_anim_sync(s);
     core_stage_end(s->metrics, CORE_STAGE_SCENE);
 }

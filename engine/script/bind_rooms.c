@@ -1,7 +1,8 @@
 // Every room's bindings, in the order of the reference page.
 #include "script/bind.h"
 
-extern const bind_room bind_core_room, bind_scene_room, bind_phys_room, bind_gfx_room;
+extern const bind_room bind_core_room, bind_scene_room, bind_phys_room, bind_gfx_room,
+    bind_anim_room;
 
 const bind_room *const bind_rooms[] = {&bind_core_room, &bind_scene_room, &bind_phys_room,
-                                       &bind_gfx_room, NULL};
+                                       &bind_gfx_room,  &bind_anim_room,  NULL};

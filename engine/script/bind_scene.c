@@ -1,4 +1,5 @@
 // corsac.scene: entities.
+#include "script/bind_anim.h"
 #include "script/bind_body.h"
 #include "script/internal.h"
 
@@ -10,6 +11,7 @@ typedef struct spawn_options {
     core_handle parent;
     bind_body_options body;
     const char *mesh, *name;
+    core_handle model, machine, clip;
     float color[4];
     bool has_body, has_scale;
 } spawn_options;
@@ -36,6 +38,9 @@ static int spawn(script *s, lua_State *L, void *args) {
         desc.shape_count = bind_body_read(L, "corsac.scene.spawn: body", &o->body, &body, shapes);
         desc.draw_scale = bind_body_mesh_scale(&o->body);
     }
+    desc.model = o->model;
+    desc.machine = o->machine;
+    desc.clip = o->clip;
     if (o->mesh) {
         draw.mesh = gfx_mesh_builtin(scene_gfx(s->scene), o->mesh);
         if (core_handle_is_null(draw.mesh)) {
@@ -133,6 +138,10 @@ static int get_body(script *s, lua_State *L, void *args) {
     bind_push(s, L, &bind_body_type, scene_entity_body(s->scene, *(core_handle *)args));
     return 1;
 }
+static int get_animator(script *s, lua_State *L, void *args) {
+    bind_push(s, L, &bind_animator_type, scene_entity_anim(s->scene, *(core_handle *)args));
+    return 1;
+}
 static int get_name(script *s, lua_State *L, void *args) {
     lua_pushstring(L, scene_entity_name(s->scene, *(core_handle *)args));
     return 1;
@@ -190,6 +199,9 @@ static const bind_fn entity_methods[] = {
      NULL, sizeof(color_args), BIND_RUNNING, .mod = true, .cost = 8, .run = set_color},
     {"getBody", "Its body, or nil.", NULL, BIND_RETURNS({"body", "corsac.Body?", NULL}),
      sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_body},
+    {"getAnimator", "What moves its model, or nil.", NULL,
+     BIND_RETURNS({"animator", "corsac.Animator?", NULL}), sizeof(core_handle), BIND_RUNNING,
+     .mod = true, .cost = 4, .run = get_animator},
     {"getName", "The name it was given, \"\" without.", NULL,
      BIND_RETURNS({"name", "string", NULL}), sizeof(core_handle), BIND_RUNNING, .mod = true,
      .cost = 4, .run = get_name},
@@ -226,6 +238,12 @@ static const bind_arg spawn_fields[] = {
      .optional = true},
     {"color", BIND_COLOR, BIND_AT(spawn_options, color), "multiplies the material's",
      .optional = true, .def_vec = {1, 1, 1}},
+    {"model", BIND_OBJECT, BIND_AT(spawn_options, model), "shown in place of a mesh",
+     .optional = true, .def_text = "nil", .type = &bind_model_type},
+    {"machine", BIND_OBJECT, BIND_AT(spawn_options, machine), "state machine that moves the model",
+     .optional = true, .def_text = "nil", .type = &bind_machine_type},
+    {"clip", BIND_OBJECT, BIND_AT(spawn_options, clip), "clip the model plays, without a machine",
+     .optional = true, .def_text = "nil", .type = &bind_clip_type},
     {"name", BIND_STRING, BIND_AT(spawn_options, name), "for corsac.scene.find", .optional = true},
     {0}};
 

@@ -1,0 +1,221 @@
+// Methods of Animator: one animated skeleton.
+#include "script/bind_anim.h"
+#include "script/bind_body.h"
+#include "script/internal.h"
+
+static anim_world *world_of(script *s) { return scene_anim(s->scene); }
+
+static int done(lua_State *L, bool good) {
+    if (!good) {
+        bind_fail(L);
+    }
+    return 0;
+}
+
+#define LOOPS "loop|once|pingpong"
+#define FADES "linear|smooth"
+
+typedef struct play_args {
+    core_handle self, clip;
+    float length;
+    int loop, fade;
+} play_args;
+static int play(script *s, lua_State *L, void *args) {
+    const play_args *a = args;
+    return done(L, anim_instance_play(world_of(s), a->self, a->clip, (anim_loop)a->loop, a->length,
+                                      (anim_fade)a->fade));
+}
+
+typedef struct go_args {
+    core_handle self;
+    const char *state;
+    float length;
+    int fade;
+} go_args;
+static int go(script *s, lua_State *L, void *args) {
+    const go_args *a = args;
+    return done(L, anim_instance_go(world_of(s), a->self, a->state, a->length, (anim_fade)a->fade));
+}
+
+typedef struct text_args {
+    core_handle self;
+    const char *text;
+} text_args;
+static int send(script *s, lua_State *L, void *args) {
+    const text_args *a = args;
+    return done(L, anim_instance_send(world_of(s), a->self, a->text));
+}
+
+typedef struct parameter_args {
+    core_handle self;
+    const char *name;
+    float value;
+} parameter_args;
+static int set_parameter(script *s, lua_State *L, void *args) {
+    const parameter_args *a = args;
+    return done(L, anim_instance_set_parameter(world_of(s), a->self, a->name, a->value));
+}
+static int get_parameter(script *s, lua_State *L, void *args) {
+    const text_args *a = args;
+    float value = 0;
+    done(L, anim_instance_parameter(world_of(s), a->self, a->text, &value));
+    lua_pushnumber(L, (double)value);
+    return 1;
+}
+
+typedef struct value_args {
+    core_handle self;
+    float value;
+} value_args;
+static int set_speed(script *s, lua_State *L, void *args) {
+    const value_args *a = args;
+    return done(L, anim_instance_set_speed(world_of(s), a->self, a->value));
+}
+static int set_time(script *s, lua_State *L, void *args) {
+    const value_args *a = args;
+    return done(L, anim_instance_set_time(world_of(s), a->self, a->value));
+}
+static int get_time(script *s, lua_State *L, void *args) {
+    lua_pushnumber(L, (double)anim_instance_time(world_of(s), *(core_handle *)args));
+    return 1;
+}
+
+static int get_state(script *s, lua_State *L, void *args) {
+    lua_pushstring(L, anim_instance_state(world_of(s), *(core_handle *)args));
+    return 1;
+}
+static int get_fade(script *s, lua_State *L, void *args) {
+    const char *from;
+    lua_pushnumber(L, (double)anim_instance_fade(world_of(s), *(core_handle *)args, &from));
+    lua_pushstring(L, from);
+    return 2;
+}
+static int get_transitions(script *s, lua_State *L, void *args) {
+    const char *to[ANIM_MAX_STATES];
+    uint32_t count =
+        anim_instance_transitions(world_of(s), *(core_handle *)args, to, ANIM_MAX_STATES);
+    count = CORE_MIN(count, ANIM_MAX_STATES);
+    lua_createtable(L, (int)count, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        lua_pushstring(L, to[i]);
+        lua_rawseti(L, -2, (int)i + 1);
+    }
+    return 1;
+}
+static int is_finished(script *s, lua_State *L, void *args) {
+    lua_pushboolean(L, anim_instance_finished(world_of(s), *(core_handle *)args));
+    return 1;
+}
+static int get_root_motion(script *s, lua_State *L, void *args) {
+    core_vec3 v = {0, 0, 0};
+    done(L, anim_instance_root_motion(world_of(s), *(core_handle *)args, &v));
+    bind_push_vec3(L, v);
+    return 3;
+}
+
+static int get_bone_position(script *s, lua_State *L, void *args) {
+    const text_args *a = args;
+    anim_world *w = world_of(s);
+    int32_t bone = anim_skeleton_find(w, anim_instance_skeleton(w, a->self), a->text);
+    if (bone < 0) {
+        bind_error(L, "Animator:getBonePosition: its skeleton has no bone \"%s\"", a->text);
+    }
+    core_mat4 m;
+    done(L, anim_instance_bone(w, a->self, (uint32_t)bone, &m));
+    bind_push_vec3(L, core_v3(m.m[12], m.m[13], m.m[14]));
+    return 3;
+}
+
+typedef struct flag_args {
+    core_handle self;
+    bool value;
+} flag_args;
+static int set_visible(script *s, lua_State *L, void *args) {
+    const flag_args *a = args;
+    return done(L, anim_instance_set_visible(world_of(s), a->self, a->value));
+}
+
+static int get_entity(script *s, lua_State *L, void *args) {
+    bind_push(s, L, &bind_entity_type, scene_entity_of_anim(s->scene, *(core_handle *)args));
+    return 1;
+}
+static int destroy(script *s, lua_State *L, void *args) {
+    return done(L, anim_instance_destroy(world_of(s), *(core_handle *)args));
+}
+static int is_destroyed(script *s, lua_State *L, void *args) {
+    (void)s;
+    (void)args;
+    lua_pushboolean(L, 0); // the caller answers for dead ones
+    return 1;
+}
+
+// ---- declarations ----
+
+#define SELF sizeof(core_handle)
+#define FADE_ARGS(T)                                                                               \
+    {"length", BIND_FLOAT,        BIND_AT(T, length), "of the cross-fade",                         \
+     "s",      BIND_NOT_NEGATIVE, .optional = true},                                               \
+    {                                                                                              \
+        "fade", BIND_ENUM, BIND_AT(T, fade), "shape of the cross-fade", .optional = true,          \
+                                                                        .values = FADES            \
+    }
+#define XYZ BIND_RETURNS({"x", "number", "m"}, {"y", "number", "m"}, {"z", "number", "m"})
+
+const bind_fn bind_animator_methods[] = {
+    {"play", "Plays a clip, whatever its machine says, fading from the pose of this moment.",
+     BIND_ARGS({"clip", BIND_OBJECT, BIND_AT(play_args, clip), "", .type = &bind_clip_type},
+               FADE_ARGS(play_args),
+               {"loop", BIND_ENUM, BIND_AT(play_args, loop), "what happens at its end",
+                .optional = true, .values = LOOPS}),
+     NULL, sizeof(play_args), BIND_SIM, .mod = true, .cost = 20, .run = play},
+    {"go", "Changes to a state of its machine, as a transition would.",
+     BIND_ARGS({"state", BIND_STRING, BIND_AT(go_args, state), "name"}, FADE_ARGS(go_args)), NULL,
+     sizeof(go_args), BIND_SIM, .mod = true, .cost = 20, .run = go},
+    {"send", "Sends an event to its machine; transitions of the next step hear it.",
+     BIND_ARGS({"event", BIND_STRING, BIND_AT(text_args, text), "name"}), NULL, sizeof(text_args),
+     BIND_SIM, .mod = true, .cost = 8, .run = send},
+    {"setParameter", "Sets a parameter of its machine.",
+     BIND_ARGS({"name", BIND_STRING, BIND_AT(parameter_args, name), ""},
+               {"value", BIND_FLOAT, BIND_AT(parameter_args, value), ""}),
+     NULL, sizeof(parameter_args), BIND_SIM, .mod = true, .cost = 8, .run = set_parameter},
+    {"getParameter", "Value of a parameter of its machine.",
+     BIND_ARGS({"name", BIND_STRING, BIND_AT(text_args, text), ""}),
+     BIND_RETURNS({"value", "number", NULL}), sizeof(text_args), BIND_RUNNING, .mod = true,
+     .cost = 8, .run = get_parameter},
+    {"setSpeed", "Factor on its time; 0 stops, negative plays backwards.",
+     BIND_ARGS({"speed", BIND_FLOAT, BIND_AT(value_args, value), ""}), NULL, sizeof(value_args),
+     BIND_SIM, .mod = true, .cost = 4, .run = set_speed},
+    {"setTime", "Goes to a place in the current clip.",
+     BIND_ARGS({"time", BIND_FLOAT, BIND_AT(value_args, value), "", "s"}), NULL, sizeof(value_args),
+     BIND_SIM, .mod = true, .cost = 4, .run = set_time},
+    {"getTime", "Place in the current clip.", NULL, BIND_RETURNS({"time", "number", "s"}), SELF,
+     BIND_RUNNING, .mod = true, .cost = 4, .run = get_time},
+    {"getState", "Name of the machine's current state, \"\" without one.", NULL,
+     BIND_RETURNS({"state", "string", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 4,
+     .run = get_state},
+    {"getFade", "Progress of the cross-fade (1: none runs) and the state it leaves.", NULL,
+     BIND_RETURNS({"progress", "number", NULL}, {"from", "string", NULL}), SELF, BIND_RUNNING,
+     .mod = true, .cost = 4, .run = get_fade},
+    {"getTransitions", "Targets of the transitions from the current state, in order.", NULL,
+     BIND_RETURNS({"states", "string[]", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 50,
+     .run = get_transitions},
+    {"isFinished", "Whether the current clip has come to its end.", NULL,
+     BIND_RETURNS({"finished", "boolean", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 4,
+     .run = is_finished},
+    {"getRootMotion", "How far the root moved in the last step, in the animator's frame.", NULL,
+     XYZ, SELF, BIND_RUNNING, .mod = true, .cost = 4, .run = get_root_motion},
+    {"getBonePosition", "Where a bone is, in the model's frame, since the last step.",
+     BIND_ARGS({"bone", BIND_STRING, BIND_AT(text_args, text), "name"}), XYZ, sizeof(text_args),
+     BIND_RUNNING, .mod = true, .cost = 50, .run = get_bone_position},
+    {"setVisible", "When false its pose is not computed; its machine still runs.",
+     BIND_ARGS({"visible", BIND_BOOL, BIND_AT(flag_args, value), ""}), NULL, sizeof(flag_args),
+     BIND_SIM, .mod = true, .cost = 4, .run = set_visible},
+    {"getEntity", "The entity it moves, or nil.", NULL,
+     BIND_RETURNS({"entity", "corsac.Entity?", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 4,
+     .run = get_entity},
+    {"isDestroyed", "Whether it was destroyed; every other method then raises an error.", NULL,
+     BIND_RETURNS({"destroyed", "boolean", NULL}), SELF, BIND_ANY, .mod = true, .cost = 2,
+     .run = is_destroyed},
+    {"destroy", "Removes it; its entity then shows the bind pose.", NULL, NULL, SELF, BIND_SIM,
+     .mod = true, .cost = 50, .run = destroy},
+    {0}};

@@ -1,0 +1,271 @@
+// corsac.anim.newMachine: tables of states and transitions whose functions are Lua's.
+#include "script/bind_anim.h"
+#include "script/internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct state_options {
+    const char *name;
+    core_handle clip;
+    int loop;
+    float speed;
+    int on_enter, on_exit, on_tick, get_speed; // checked here, fetched again from the table
+    bool has_enter, has_exit, has_tick, has_get_speed;
+} state_options;
+
+typedef struct transition_options {
+    const char *from, *to, *event, *parameter;
+    int condition, compare, fade;
+    bool has_condition, uninterruptible, sync;
+    float value, length;
+} transition_options;
+
+// What a callback needs: a userdata of Lua's, kept alive by a reference for the state's life, as a
+// machine may outlast the tables it was made from.
+typedef struct lua_functions {
+    script *s;
+    int enter, leave, tick, speed, condition; // references, LUA_NOREF without
+} lua_functions;
+
+static bool push_call(lua_functions *f, int ref, anim_instance instance) {
+    if (ref == LUA_NOREF) {
+        return false;
+    }
+    lua_State *L = f->s->L;
+    luaL_checkstack(L, 8, "animation callbacks");
+    lua_rawgeti(L, LUA_REGISTRYINDEX, ref);
+    bind_push(f->s, L, &bind_animator_type, instance);
+    return true;
+}
+
+static void call_enter(void *ctx, anim_world *w, anim_instance instance) {
+    lua_functions *f = ctx;
+    (void)w;
+    if (push_call(f, f->enter, instance)) {
+        script_call(f->s, BIND_STEP, 1, 0);
+    }
+}
+static void call_exit(void *ctx, anim_world *w, anim_instance instance) {
+    lua_functions *f = ctx;
+    (void)w;
+    if (push_call(f, f->leave, instance)) {
+        script_call(f->s, BIND_STEP, 1, 0);
+    }
+}
+static void call_tick(void *ctx, anim_world *w, anim_instance instance, float dt) {
+    lua_functions *f = ctx;
+    (void)w;
+    if (push_call(f, f->tick, instance)) {
+        lua_pushnumber(f->s->L, (double)dt);
+        script_call(f->s, BIND_STEP, 2, 0);
+    }
+}
+
+static float get_speed(void *ctx, anim_world *w, anim_instance instance, float phase) {
+    lua_functions *f = ctx;
+    (void)w;
+    float speed = 1;
+    if (push_call(f, f->speed, instance)) {
+        lua_State *L = f->s->L;
+        lua_pushnumber(L, (double)phase);
+        if (script_call(f->s, BIND_STEP, 2, 1)) {
+            speed = lua_isnumber(L, -1) ? (float)lua_tonumber(L, -1) : 1;
+            lua_pop(L, 1);
+        }
+    }
+    return speed;
+}
+
+// A condition that raises an error counts as false: the machine stays where it is.
+static bool condition(void *ctx, anim_world *w, anim_instance instance) {
+    lua_functions *f = ctx;
+    (void)w;
+    bool go = false;
+    if (push_call(f, f->condition, instance) && script_call(f->s, BIND_STEP, 1, 1)) {
+        go = lua_toboolean(f->s->L, -1);
+        lua_pop(f->s->L, 1);
+    }
+    return go;
+}
+
+// Reference to the function `field` of the table on top of the stack.
+static int take(lua_State *L, const char *field) {
+    lua_getfield(L, -1, field);
+    if (!lua_isfunction(L, -1)) {
+        lua_pop(L, 1);
+        return LUA_NOREF;
+    }
+    return luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+// Functions of list[i] in the options table at stack index 1.
+static lua_functions *functions_of(script *s, lua_State *L, const char *list, uint32_t i) {
+    lua_functions *f = lua_newuserdata(L, sizeof *f);
+    luaL_ref(L, LUA_REGISTRYINDEX);
+    f->s = s;
+    lua_getfield(L, 1, list);
+    lua_rawgeti(L, -1, (int)i + 1);
+    f->enter = take(L, "onEnter");
+    f->leave = take(L, "onExit");
+    f->tick = take(L, "onTick");
+    f->speed = take(L, "getSpeed");
+    f->condition = take(L, "condition");
+    lua_pop(L, 2);
+    return f;
+}
+
+static void read_state(script *s, lua_State *L, const state_options *o, uint32_t i,
+                       anim_state_desc *out) {
+    *out = (anim_state_desc){
+        .name = o->name, .clip = o->clip, .loop = (anim_loop)o->loop, .speed = o->speed};
+    if (o->has_enter || o->has_exit || o->has_tick || o->has_get_speed) {
+        out->ctx = functions_of(s, L, "states", i);
+        out->on_enter = o->has_enter ? call_enter : NULL;
+        out->on_exit = o->has_exit ? call_exit : NULL;
+        out->on_tick = o->has_tick ? call_tick : NULL;
+        out->speed_fn = o->has_get_speed ? get_speed : NULL;
+    }
+}
+
+static void read_transition(script *s, lua_State *L, const transition_options *o, uint32_t i,
+                            anim_transition_desc *out) {
+    int kinds = o->has_condition + (o->event != NULL) + (o->parameter != NULL);
+    if (kinds > 1) {
+        bind_error(L,
+                   "corsac.anim.newMachine: transition %u to \"%s\": give one of condition, event "
+                   "and parameter (none: when the clip is finished)",
+                   i + 1, o->to);
+    }
+    *out = (anim_transition_desc){.from = o->from,
+                                  .to = o->to,
+                                  .event = o->event,
+                                  .parameter = o->parameter,
+                                  .compare = (anim_compare)o->compare,
+                                  .value = o->value,
+                                  .length = o->length,
+                                  .fade = (anim_fade)o->fade,
+                                  .uninterruptible = o->uninterruptible,
+                                  .sync = o->sync};
+    out->when = o->event       ? ANIM_WHEN_EVENT
+                : o->parameter ? ANIM_WHEN_PARAMETER
+                               : ANIM_WHEN_FINISHED;
+    if (o->has_condition) {
+        out->when = ANIM_WHEN_CONDITION;
+        out->condition = condition;
+        out->ctx = functions_of(s, L, "transitions", i);
+    }
+}
+
+static int compare_parameters(const void *a, const void *b) {
+    return strcmp(((const anim_parameter_desc *)a)->name, ((const anim_parameter_desc *)b)->name);
+}
+
+// {name = number, ...} in the order of names, whatever order Lua's table has.
+static uint32_t read_parameters(lua_State *L, anim_parameter_desc out[ANIM_MAX_PARAMETERS]) {
+    uint32_t count = 0;
+    lua_getfield(L, 1, "parameters");
+    lua_pushnil(L);
+    while (lua_next(L, -2)) {
+        if (lua_type(L, -2) != LUA_TSTRING || lua_type(L, -1) != LUA_TNUMBER ||
+            count == ANIM_MAX_PARAMETERS) {
+            bind_error(L,
+                       "corsac.anim.newMachine: parameters: expected at most %u names with "
+                       "numbers, {speed = 0}",
+                       ANIM_MAX_PARAMETERS);
+        }
+        out[count++] = (anim_parameter_desc){lua_tostring(L, -2), (float)lua_tonumber(L, -1)};
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    qsort(out, count, sizeof *out, compare_parameters);
+    return count;
+}
+
+int bind_machine_new(script *s, lua_State *L, void *args) {
+    const bind_machine_options *o = &((bind_machine_call *)args)->options;
+    anim_parameter_desc parameter[ANIM_MAX_PARAMETERS];
+    anim_machine_desc desc = anim_machine_desc_default();
+    anim_state_desc *state = lua_newuserdata(L, (o->states.count + 1) * sizeof *state);
+    anim_transition_desc *transition =
+        lua_newuserdata(L, (o->transitions.count + 1) * sizeof *transition);
+    for (uint32_t i = 0; i < o->states.count; i++) {
+        read_state(s, L, (const state_options *)o->states.items + i, i, &state[i]);
+    }
+    for (uint32_t i = 0; i < o->transitions.count; i++) {
+        read_transition(s, L, (const transition_options *)o->transitions.items + i, i,
+                        &transition[i]);
+    }
+    desc.initial = o->initial;
+    desc.state = state;
+    desc.state_count = o->states.count;
+    desc.transition = transition;
+    desc.transition_count = o->transitions.count;
+    desc.parameter = parameter;
+    desc.parameter_count = o->has_parameters ? read_parameters(L, parameter) : 0;
+    anim_machine machine = anim_machine_create(scene_anim(s->scene), &desc);
+    if (core_handle_is_null(machine)) {
+        bind_fail(L);
+    }
+    bind_push(s, L, &bind_machine_type, machine);
+    return 1;
+}
+
+// ---- declarations ----
+
+#define CALLBACK(field, T, member, flag, what)                                                     \
+    {                                                                                              \
+        field, BIND_FUNCTION, BIND_AT(T, member), what, .optional = true, .def_text = "none",      \
+                                                        BIND_GIVEN(T, flag)                        \
+    }
+
+static const bind_arg state_fields[] = {
+    {"name", BIND_STRING, BIND_AT(state_options, name), "unique in the machine"},
+    {"clip", BIND_OBJECT, BIND_AT(state_options, clip), "what it plays", .type = &bind_clip_type},
+    {"loop", BIND_ENUM, BIND_AT(state_options, loop), "what happens at the clip's end",
+     .optional = true, .values = "loop|once|pingpong"},
+    {"speed", BIND_FLOAT, BIND_AT(state_options, speed), "factor on time; negative: backwards",
+     .optional = true, .def = 1},
+    CALLBACK("onEnter", state_options, on_enter, has_enter, "called with the animator"),
+    CALLBACK("onExit", state_options, on_exit, has_exit, "called with the animator"),
+    CALLBACK("onTick", state_options, on_tick, has_tick,
+             "called each step with the animator and dt"),
+    CALLBACK("getSpeed", state_options, get_speed, has_get_speed,
+             "gives a factor on time; called with the animator and the phase from 0 to 1"),
+    {0}};
+
+static const bind_arg transition_fields[] = {
+    {"from", BIND_STRING, BIND_AT(transition_options, from), "state it leaves (nil: any other)",
+     .optional = true, .def_text = NULL},
+    {"to", BIND_STRING, BIND_AT(transition_options, to), "state it enters"},
+    CALLBACK("condition", transition_options, condition, has_condition,
+             "called each step with the animator; true starts it"),
+    {"event", BIND_STRING, BIND_AT(transition_options, event), "starts when sent", .optional = true,
+     .def_text = NULL},
+    {"parameter", BIND_STRING, BIND_AT(transition_options, parameter),
+     "starts when it compares so with value", .optional = true, .def_text = NULL},
+    {"compare", BIND_ENUM, BIND_AT(transition_options, compare), "", .optional = true,
+     .values = ">|<|>=|<=|==|~="},
+    {"value", BIND_FLOAT, BIND_AT(transition_options, value), "", .optional = true},
+    {"length", BIND_FLOAT, BIND_AT(transition_options, length), "of the cross-fade", "s",
+     BIND_NOT_NEGATIVE, .optional = true},
+    {"fade", BIND_ENUM, BIND_AT(transition_options, fade), "shape of the cross-fade",
+     .optional = true, .values = "linear|smooth"},
+    {"uninterruptible", BIND_BOOL, BIND_AT(transition_options, uninterruptible),
+     "no other transition starts before its end", .optional = true},
+    {"sync", BIND_BOOL, BIND_AT(transition_options, sync), "the target starts at the same phase",
+     .optional = true},
+    {0}};
+
+const bind_arg bind_machine_fields[] = {
+    {"initial", BIND_STRING, BIND_AT(bind_machine_options, initial), "state it starts in",
+     .optional = true, .def_text = NULL},
+    {"states", BIND_LIST, BIND_AT(bind_machine_options, states), "", .fields = state_fields,
+     .size = sizeof(state_options)},
+    {"transitions", BIND_LIST, BIND_AT(bind_machine_options, transitions),
+     "the first that matches goes", .optional = true, .fields = transition_fields,
+     .size = sizeof(transition_options)},
+    {"parameters", BIND_TABLE, BIND_AT(bind_machine_options, parameters),
+     "names with their first values", .optional = true, .def_text = "none",
+     BIND_GIVEN(bind_machine_options, has_parameters)},
+    {0}};
