@@ -14,7 +14,7 @@ CORE_COLUMNS_DEFINE(scene_entities, SCENE_ENTITY_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_names, SCENE_NAME_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_clock, SCENE_CLOCK_COLUMNS)
 
-static const char *const rooms[] = {"scene", "script", "phys", "gfx"};
+static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim"};
 
 scene_desc scene_desc_default(void) {
     return (scene_desc){.dt = 1.0f / 60.0f, .max_entities = 1u << 20, .cookie = SCENE_COOKIE};
