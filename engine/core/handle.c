@@ -172,7 +172,8 @@ static uint32_t word_at(const uint8_t *array, uint32_t i) {
 
 // Checks that the arrays describe a pool: rows and slots point at each other, and the free list
 // visits each remaining slot once. Distinctness needs no marks: two rows that claim one slot cannot
-// both be its row, and a list that ends has no cycle.
+// both be its row, and a list that ends has no cycle. A retired slot cannot hide in the list, as
+// its row is no link.
 static bool arrays_are_sound(const pool_header *header, const uint8_t *arrays) {
     const uint8_t *generation = arrays;
     const uint8_t *row = generation + (size_t)header->slots * sizeof(uint32_t);
@@ -196,7 +197,7 @@ static bool arrays_are_sound(const pool_header *header, const uint8_t *arrays) {
     }
     uint32_t link = header->free_head;
     for (uint32_t left = header->slots - header->count - retired; left; --left) {
-        if (link == 0 || link > header->slots || word_at(generation, link - 1) == 0) {
+        if (link == 0 || link > header->slots) {
             return false;
         }
         uint32_t next = word_at(row, link - 1);

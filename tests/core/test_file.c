@@ -1,5 +1,6 @@
 #include "core/file.h"
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -8,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/file_at.h"
 #include "core/log.h"
 #include "unity.h"
 
@@ -97,6 +99,20 @@ static void unreadable_files_say_why(void) {
     expect_unreadable(in_root("sparse"), "1099511627776 bytes exceed the limit of 1073741824");
 }
 
+// What virtual files rest on: the open itself refuses links, so a file swapped for a link after any
+// look at it is refused too.
+static void links_are_followed_on_request_only(void) {
+    TEST_ASSERT_TRUE(core_file_write(in_root("target"), "text", 4));
+    TEST_ASSERT_EQUAL_INT(0, symlink("target", in_root("link")));
+    expect_content(in_root("link"), "text");
+    TEST_ASSERT_NULL(core_file_read_at(AT_FDCWD, in_root("link"), false, "shown", NULL));
+    TEST_ASSERT_EQUAL_STRING("cannot open 'shown': symbolic links are not followed here",
+                             core_last_error());
+    char *text = core_file_read_at(AT_FDCWD, in_root("target"), false, "shown", NULL);
+    TEST_ASSERT_EQUAL_STRING("text", text);
+    core_free(text);
+}
+
 static void unwritable_files_say_why(void) {
     TEST_ASSERT_TRUE(core_file_write(in_root("file"), "x", 1));
     TEST_ASSERT_FALSE(core_file_write(in_root("file/inside"), "x", 1));
@@ -151,6 +167,7 @@ int main(void) {
     RUN_TEST(what_is_written_is_read);
     RUN_TEST(large_files_come_back_whole);
     RUN_TEST(unreadable_files_say_why);
+    RUN_TEST(links_are_followed_on_request_only);
     RUN_TEST(unwritable_files_say_why);
     RUN_TEST(readers_never_see_a_part);
     return UNITY_END();

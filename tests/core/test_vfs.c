@@ -203,31 +203,34 @@ static void stamps_follow_the_file(void) {
     TEST_ASSERT_EQUAL_UINT64(0, core_vfs_stamp(vfs, "one.txt"));
 }
 
-// A second thread keeps swapping the folder "swap" for a link that leads out.
+// A second thread keeps swapping a folder or file for a link that leads out.
+typedef struct swap {
+    char path[256], away[256];
+    const char *target;
+} swap;
+
 static _Atomic bool swapping;
-static void *swap_folder(void *arg) {
-    char(*path)[512] = arg;
+static void *swap_in_turns(void *arg) {
+    const swap *s = arg;
     while (atomic_load(&swapping)) {
-        rename(path[0], path[1]); // folder away
-        if (symlink("../secret", path[0]) != 0) {
+        rename(s->path, s->away);
+        if (symlink(s->target, s->path) != 0) {
             break;
         }
-        unlink(path[0]);
-        rename(path[1], path[0]);
+        unlink(s->path);
+        rename(s->away, s->path);
     }
     return NULL;
 }
 
-static void a_link_swapped_in_midway_leads_nowhere(void) {
-    put("a/swap/key", "harmless");
-    char paths[2][512];
-    strcpy(paths[0], real("a/swap"));
-    strcpy(paths[1], real("a/away"));
+static void read_while_swapping(const char *name, const char *target) {
+    swap s = {.target = target};
+    snprintf(s.path, sizeof s.path, "%s", real(name));
+    snprintf(s.away, sizeof s.away, "%s", real("a/away"));
     atomic_store(&swapping, true);
     pthread_t thread;
-    TEST_ASSERT_EQUAL_INT(0, pthread_create(&thread, NULL, swap_folder, paths));
-    int harmless = 0, refused = 0, secret = 0;
-    int reads = 0;
+    TEST_ASSERT_EQUAL_INT(0, pthread_create(&thread, NULL, swap_in_turns, &s));
+    int harmless = 0, refused = 0, secret = 0, reads = 0;
     for (; reads < 20000 || (refused == 0 && reads < 1000000); ++reads) {
         char *got = core_vfs_read(vfs, "swap/key", NULL);
         harmless += got && strcmp(got, "harmless") == 0;
@@ -240,6 +243,16 @@ static void a_link_swapped_in_midway_leads_nowhere(void) {
     TEST_ASSERT_EQUAL_INT(0, secret);
     TEST_ASSERT_EQUAL_INT(reads, harmless + refused);
     TEST_ASSERT_GREATER_THAN_INT(0, refused); // the race did happen
+}
+
+static void a_folder_swapped_for_a_link_leads_nowhere(void) {
+    put("a/swap/key", "harmless");
+    read_while_swapping("a/swap", "../secret");
+}
+
+static void a_file_swapped_for_a_link_leads_nowhere(void) {
+    put("a/swap/key", "harmless");
+    read_while_swapping("a/swap/key", "../../secret/key");
 }
 
 int main(void) {
@@ -255,6 +268,7 @@ int main(void) {
     RUN_TEST(writes_stay_in_writable_mounts);
     RUN_TEST(resolve_gives_the_real_path);
     RUN_TEST(stamps_follow_the_file);
-    RUN_TEST(a_link_swapped_in_midway_leads_nowhere);
+    RUN_TEST(a_folder_swapped_for_a_link_leads_nowhere);
+    RUN_TEST(a_file_swapped_for_a_link_leads_nowhere);
     return UNITY_END();
 }
