@@ -120,6 +120,32 @@ void phys_integrate_rotation(phys_bodies *b, uint32_t i, float h) {
     put_quat(b, i, framed ? phys_quat_mul(q, phys_conj(b->iq[i])) : q);
 }
 
+// Ends a step: `turn` is the sum of the substeps' angular velocity times h. A free body turns by
+// the splitting above in quarters of the step; a touched one by its turn, while its angular
+// velocity follows the gyroscopic term.
+void phys_finish_rotation(phys_bodies *b, uint32_t i, core_vec3 turn, float dt, bool free) {
+    bool round = (b->flags[i] & PHYS_BODY_ISOTROPIC) != 0 || b->type[i] != PHYS_DYNAMIC;
+    if (free && !round) {
+        for (int k = 0; k < 4; k++) {
+            phys_integrate_rotation(b, i, 0.25f * dt);
+        }
+        return;
+    }
+    core_quat q = phys_body_quat(b, i);
+    if (!round) {
+        phys_integrate_rotation(b, i, dt);
+    }
+    float angle = core_v3_length(turn);
+    if (angle == 0.0f) {
+        put_quat(b, i, q);
+        return;
+    }
+    float s, c;
+    half_turn(0.5f * angle, &s, &c);
+    core_vec3 u = core_v3_scale(turn, s / angle);
+    put_quat(b, i, phys_quat_mul((core_quat){u.x, u.y, u.z, c}, q));
+}
+
 void phys_clear_forces(phys_world *w) {
     phys_bodies *b = &w->bodies;
     uint32_t n = core_columns_count(&b->set);

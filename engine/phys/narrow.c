@@ -24,7 +24,7 @@ static void refresh_ball(phys_world *w, uint32_t i, float dt) {
     }
     if (m.count == 0) {
         c->separation[i] = 1e30f;
-        c->jn[i] = c->jt1[i] = c->jt2[i] = 0.0f;
+        c->jn[i] = c->jx[i] = c->jy[i] = c->jz[i] = 0.0f;
         return;
     }
     phys_put3(c->nx, c->ny, c->nz, i, m.normal);
@@ -40,19 +40,17 @@ static void narrow_balls(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk
     }
 }
 
-static void carry_point(const phys_point *old, phys_point *p) {
-    p->normal_impulse = old->normal_impulse;
-    p->tangent_impulse[0] = old->tangent_impulse[0];
-    p->tangent_impulse[1] = old->tangent_impulse[1];
-}
-
 // By feature first; a point whose feature is new takes over from the nearest one left.
 static void carry_impulses(const phys_manifold *old, phys_manifold *m) {
     bool used[4] = {false}, done[4] = {false};
+    if (m->count != 0) {
+        m->friction = old->friction;
+        m->twist = old->twist;
+    }
     for (uint32_t k = 0; k < m->count; k++) {
         for (uint32_t o = 0; o < old->count && !done[k]; o++) {
             if (!used[o] && old->point[o].feature == m->point[k].feature) {
-                carry_point(&old->point[o], &m->point[k]);
+                m->point[k].normal_impulse = old->point[o].normal_impulse;
                 used[o] = done[k] = true;
             }
         }
@@ -68,7 +66,7 @@ static void carry_impulses(const phys_manifold *old, phys_manifold *m) {
             }
         }
         if (best < 4) {
-            carry_point(&old->point[best], &m->point[k]);
+            m->point[k].normal_impulse = old->point[best].normal_impulse;
             used[best] = true;
         }
     }

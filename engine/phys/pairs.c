@@ -90,6 +90,12 @@ static bool is_ball(const phys_world *w, uint32_t shape) {
            w->bodies.shape[s->row[shape]] == phys_row_slot(&s->set, shape);
 }
 
+static void mix_material(const phys_shapes *s, uint32_t a, uint32_t b, float *friction,
+                         float *restitution) {
+    *friction = core_sqrtf(s->friction[a] * s->friction[b]);
+    *restitution = CORE_MAX(s->restitution[a], s->restitution[b]);
+}
+
 static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
     const phys_shapes *s = &w->shapes;
     uint32_t a = phys_slot_row(&s->set, slot_a), b = phys_slot_row(&s->set, slot_b);
@@ -99,12 +105,13 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
     uint32_t sa = phys_row_slot(&s->set, first), sb = phys_row_slot(&s->set, second);
     uint64_t key = pair_key(slot_a, slot_b);
     if (w->bodies.type[s->row[first]] == PHYS_DYNAMIC && is_ball(w, first) &&
-        (w->bodies.type[s->row[second]] != PHYS_DYNAMIC || is_ball(w, second))) {
+        (w->bodies.type[s->row[second]] == PHYS_STATIC || is_ball(w, second))) {
         core_handle h = core_columns_add(&w->balls.set);
         uint32_t i = core_columns_count(&w->balls.set) - 1;
         w->balls.sa[i] = sa;
         w->balls.sb[i] = sb;
         w->balls.stamp[i] = w->stamp;
+        mix_material(s, first, second, &w->balls.friction[i], &w->balls.restitution[i]);
         map_add(&w->map, key, h.index << 1 | 1u);
     } else {
         core_handle h = core_columns_add(&w->contacts.set);
@@ -112,6 +119,7 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
         w->contacts.sa[i] = sa;
         w->contacts.sb[i] = sb;
         w->contacts.stamp[i] = w->stamp;
+        mix_material(s, first, second, &w->contacts.friction[i], &w->contacts.restitution[i]);
         map_add(&w->map, key, h.index << 1);
     }
 }

@@ -57,12 +57,11 @@ static void apply(phys_bodies *b, const row *r, core_vec3 j) {
     phys_put3(b->wx, b->wy, b->wz, c, core_v3_add(phys_get3(b->wx, b->wy, b->wz, c), wb));
 }
 
-static void finish_row(const phys_world *w, row *r, uint32_t sa, uint32_t sb) {
+static void finish_row(const phys_world *w, row *r, core_vec3 rub) {
     const phys_bodies *b = &w->bodies;
-    uint32_t ia = phys_slot_row(&w->shapes.set, sa), ib = phys_slot_row(&w->shapes.set, sb);
-    r->friction = core_sqrtf(w->shapes.friction[ia] * w->shapes.friction[ib]);
-    r->restitution = CORE_MAX(w->shapes.restitution[ia], w->shapes.restitution[ib]);
     phys_basis(r->n, &r->t[0], &r->t[1]);
+    r->jt[0] = core_v3_dot(rub, r->t[0]);
+    r->jt[1] = core_v3_dot(rub, r->t[1]);
     r->mass_n = effective_mass(b, r, r->n);
     r->mass_t[0] = effective_mass(b, r, r->t[0]);
     r->mass_t[1] = effective_mass(b, r, r->t[1]);
@@ -72,27 +71,29 @@ static void finish_row(const phys_world *w, row *r, uint32_t sa, uint32_t sb) {
 
 static void gather(phys_world *w, solve *s) {
     const phys_bodies *b = &w->bodies;
-    uint32_t balls = core_columns_count(&w->balls.set);
+    const phys_balls *balls = &w->balls;
+    uint32_t ball_count = core_columns_count(&balls->set);
     uint32_t contacts = core_columns_count(&w->contacts.set);
-    s->rows = CORE_ARENA_ARRAY(&w->scratch, row, balls + 4u * contacts + 1u);
-    for (uint32_t i = 0; i < balls; i++) {
-        if (w->balls.separation[i] > 1e29f) {
+    s->rows = CORE_ARENA_ARRAY(&w->scratch, row, ball_count + 4u * contacts + 1u);
+    for (uint32_t i = 0; i < ball_count; i++) {
+        if (balls->separation[i] > 1e29f) {
             continue;
         }
         row *r = &s->rows[s->count++];
-        uint32_t a = w->balls.a[i], c = w->balls.b[i];
+        uint32_t a = balls->a[i], c = balls->b[i];
         *r = (row){.a = a,
                    .b = c,
-                   .n = phys_get3(w->balls.nx, w->balls.ny, w->balls.nz, i),
-                   .separation = w->balls.separation[i],
-                   .jn = w->balls.jn[i],
-                   .jt = {w->balls.jt1[i], w->balls.jt2[i]}};
-        uint32_t shape = phys_slot_row(&w->shapes.set, w->balls.sa[i]);
+                   .n = phys_get3(balls->nx, balls->ny, balls->nz, i),
+                   .separation = balls->separation[i],
+                   .jn = balls->jn[i],
+                   .friction = balls->friction[i],
+                   .restitution = balls->restitution[i]};
+        uint32_t shape = phys_slot_row(&w->shapes.set, balls->sa[i]);
         r->ra = core_v3_scale(r->n, w->shapes.radius[shape] + 0.5f * r->separation);
         core_vec3 d =
             core_v3_sub(phys_get3(b->cx, b->cy, b->cz, a), phys_get3(b->cx, b->cy, b->cz, c));
         r->rb = core_v3_add(d, r->ra);
-        finish_row(w, r, w->balls.sa[i], w->balls.sb[i]);
+        finish_row(w, r, phys_get3(balls->jx, balls->jy, balls->jz, i));
     }
     for (uint32_t i = 0; i < contacts; i++) {
         const phys_manifold *m = &w->contacts.manifold[i];
@@ -106,10 +107,15 @@ static void gather(phys_world *w, solve *s) {
                        .rb = p->rb,
                        .separation = p->separation,
                        .jn = p->normal_impulse,
-                       .jt = {p->tangent_impulse[0], p->tangent_impulse[1]}};
-            finish_row(w, r, w->contacts.sa[i], w->contacts.sb[i]);
+                       .friction = w->contacts.friction[i],
+                       .restitution = w->contacts.restitution[i]};
+            finish_row(w, r, core_v3_scale(m->friction, 1.0f / (float)m->count));
         }
     }
+}
+
+static core_vec3 rub_of(const row *r) {
+    return core_v3_add(core_v3_scale(r->t[0], r->jt[0]), core_v3_scale(r->t[1], r->jt[1]));
 }
 
 // Writes the impulses back in the order in which gather read them.
@@ -118,17 +124,16 @@ static void scatter(phys_world *w, const solve *s) {
     for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
         if (w->balls.separation[i] < 1e29f) {
             w->balls.jn[i] = r->jn;
-            w->balls.jt1[i] = r->jt[0];
-            w->balls.jt2[i] = r->jt[1];
+            phys_put3(w->balls.jx, w->balls.jy, w->balls.jz, i, rub_of(r));
             r++;
         }
     }
     for (uint32_t i = 0; i < core_columns_count(&w->contacts.set); i++) {
         phys_manifold *m = &w->contacts.manifold[i];
+        m->friction = core_v3(0, 0, 0);
         for (uint32_t k = 0; k < m->count; k++, r++) {
             m->point[k].normal_impulse = r->jn;
-            m->point[k].tangent_impulse[0] = r->jt[0];
-            m->point[k].tangent_impulse[1] = r->jt[1];
+            m->friction = core_v3_add(m->friction, rub_of(r));
         }
     }
 }

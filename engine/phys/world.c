@@ -7,14 +7,14 @@
 #include <string.h>
 
 static const phys_broad_method *const broads[] = {&phys_broad_sap, &phys_broad_brute};
-static const phys_solver_method *const solvers[] = {&phys_solver_sequential};
+static const phys_solver_method *const solvers[] = {&phys_solver_soft, &phys_solver_sequential};
 
 phys_world_desc phys_world_desc_default(void) {
     return (phys_world_desc){.gravity = {0.0f, -9.81f, 0.0f}, .cookie = PHYS_WORLD_COOKIE};
 }
 
 const char *const *phys_method_names(const char *kind) {
-    static const char *const solver[] = {"sequential", NULL};
+    static const char *const solver[] = {"soft", "sequential", NULL};
     static const char *const broad[] = {"auto", "sap", "brute", NULL};
     static const char *const none[] = {NULL};
     return strcmp(kind, "solver") == 0 ? solver : strcmp(kind, "broad") == 0 ? broad : none;
@@ -41,7 +41,7 @@ static bool pick_solver(phys_world *w, const char *name) {
             return true;
         }
     }
-    return core_fail("phys setting solver: '%s' is unknown, expected sequential", name);
+    return core_fail("phys setting solver: '%s' is unknown, expected soft or sequential", name);
 }
 
 static bool check_desc(const phys_world_desc *d) {

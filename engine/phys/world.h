@@ -97,13 +97,15 @@ CORE_COLUMNS_DECLARE(phys_shapes, PHYS_SHAPE_COLUMNS)
 // One contact point. ra, rb: from the centres of mass, world axes, at the start of the step.
 typedef struct phys_point {
     core_vec3 ra, rb;
-    float separation;                         // m, < 0: overlap
-    float normal_impulse, tangent_impulse[2]; // N s, carried from step to step
-    uint32_t feature;                         // which corner, edge or face made it
+    float separation;     // m, < 0: overlap
+    float normal_impulse; // N s of a substep, carried from step to step
+    uint32_t feature;     // which corner, edge or face made it
 } phys_point;
 typedef struct phys_manifold {
-    core_vec3 normal; // unit, from a to b
-    uint32_t count;   // 0..4
+    core_vec3 normal;   // unit, from a to b
+    uint32_t count;     // 0..4
+    core_vec3 friction; // N s, on b, sum over the points
+    float twist;        // N m s about the normal, on b
     phys_point point[4];
 } phys_manifold;
 
@@ -113,9 +115,12 @@ typedef struct phys_manifold {
     X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
     X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
     X(float, jn, CORE_COLUMN_STATE)                                                                \
-    X(float, jt1, CORE_COLUMN_STATE)                                                               \
+    X(float, jx, CORE_COLUMN_STATE)                                                                \
+    X(float, jy, CORE_COLUMN_STATE)                                                                \
     X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
-    X(float, jt2, CORE_COLUMN_STATE)                                                               \
+    X(float, jz, CORE_COLUMN_STATE)                                                                \
+    X(float, friction, CORE_COLUMN_STATE)                                                          \
+    X(float, restitution, CORE_COLUMN_STATE)                                                       \
     X(float, nx, 0)                                                                                \
     X(float, ny, 0)                                                                                \
     X(float, nz, 0)                                                                                \
@@ -128,6 +133,8 @@ CORE_COLUMNS_DECLARE(phys_balls, PHYS_BALL_COLUMNS)
     X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
     X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
     X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
+    X(float, friction, CORE_COLUMN_STATE)                                                          \
+    X(float, restitution, CORE_COLUMN_STATE)                                                       \
     X(phys_manifold, manifold, CORE_COLUMN_STATE)                                                  \
     X(uint32_t, a, 0)                                                                              \
     X(uint32_t, b, 0)                                                                              \
@@ -224,7 +231,7 @@ typedef struct phys_geom {
 } phys_geom;
 
 extern const phys_broad_method phys_broad_brute, phys_broad_sap;
-extern const phys_solver_method phys_solver_sequential;
+extern const phys_solver_method phys_solver_sequential, phys_solver_soft;
 
 static inline core_vec3 phys_get3(const float *x, const float *y, const float *z, uint32_t i) {
     return core_v3(x[i], y[i], z[i]);
@@ -298,6 +305,7 @@ bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, f
 // integrate.c
 void phys_integrate_velocity(phys_world *world, float h);
 void phys_integrate_rotation(phys_bodies *b, uint32_t row, float h);
+void phys_finish_rotation(phys_bodies *b, uint32_t row, core_vec3 turn, float dt, bool free);
 void phys_clear_forces(phys_world *world);
 
 #endif

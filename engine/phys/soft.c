@@ -1,0 +1,485 @@
+// The default solver: soft contact constraints in substeps with a relax pass (after Catto,
+// "Solver2D" 2024, and Macklin et al., "Small steps in physics simulation", 2019), on
+// graph-coloured wide lanes. What differs: ball contacts have their own small kernel; the warm
+// start of a substep is what contacts gave a body in the one before, taken from the body itself, so
+// that only two passes over the contacts remain per substep; contact stiffness follows the substep
+// rate.
+#include "phys/soft.h"
+
+#include <string.h>
+
+#define SOFT_COLORS 64u // colour 64: more contacts on one body than colours, solved one by one
+#define STIFFNESS   0.25f
+#define DAMPING     10.0f
+#define PUSH_MAX    3.0f // m/s
+
+enum { GROUP_BALLS, GROUP_MANIFOLDS, GROUP_FIXED_BALLS, GROUP_FIXED_MANIFOLDS, GROUPS };
+
+typedef struct soft_group {
+    uint32_t lanes[SOFT_COLORS + 1]; // contacts by colour
+    uint32_t first[SOFT_COLORS + 2]; // first block of each colour
+    ball_block *balls;
+    manifold_block *manifolds;
+} soft_group;
+
+// Where a contact went: its group (GROUPS: not in reach), colour and lane of that colour.
+typedef struct soft_place {
+    uint8_t group, color;
+    uint32_t lane;
+} soft_place;
+
+typedef struct soft {
+    phys_world *world;
+    soft_bodies bodies;
+    soft_spring spring, spring_fixed;
+    soft_group group[GROUPS];
+    soft_place *ball_place, *contact_place;
+    soft_balls_fn *run_balls;
+    soft_manifolds_fn *run_manifolds;
+    soft_flat_fn *push, *move;
+    bool bounces;
+    float dt, h;
+} soft;
+
+static soft_spring make_spring(float h, float stiffness) {
+    float omega_h = 2.0f * CORE_PI_F * stiffness;
+    float a1 = 2.0f * DAMPING + omega_h, a2 = omega_h * a1, a3 = 1.0f / (1.0f + a2);
+    return (soft_spring){omega_h / (a1 * h), a2 * a3, a3, PUSH_MAX, h, 1.0f / h};
+}
+
+static void fill_inertia(const phys_bodies *b, uint32_t i, float *out) {
+    if (b->flags[i] & PHYS_BODY_ISOTROPIC) {
+        out[0] = out[1] = out[2] = b->ix[i];
+        return;
+    }
+    core_quat q = phys_body_quat(b, i);
+    q = b->flags[i] & PHYS_BODY_FRAME ? phys_quat_mul(q, b->iq[i]) : q;
+    phys_mat3 m = phys_quat_mat(q);
+    core_vec3 inv = phys_get3(b->ix, b->iy, b->iz, i);
+    core_vec3 x = core_v3(m.x.x * inv.x, m.x.y * inv.y, m.x.z * inv.z);
+    core_vec3 y = core_v3(m.y.x * inv.x, m.y.y * inv.y, m.y.z * inv.z);
+    core_vec3 z = core_v3(m.z.x * inv.x, m.z.y * inv.y, m.z.z * inv.z);
+    out[0] = core_v3_dot(x, m.x);
+    out[1] = core_v3_dot(y, m.y);
+    out[2] = core_v3_dot(z, m.z);
+    out[4] = core_v3_dot(x, m.y);
+    out[5] = core_v3_dot(x, m.z);
+    out[6] = core_v3_dot(y, m.z);
+}
+
+static core_vec3 pull_on(const phys_world *w, uint32_t i, const float *moved) {
+    const phys_bodies *b = &w->bodies;
+    core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
+    a = core_v3_mad(a, b->force[i], b->im[i]);
+    if (core_columns_count(&w->fields.set) != 0) {
+        core_vec3 at = core_v3(b->cx[i] + moved[0], b->cy[i] + moved[1], b->cz[i] + moved[2]);
+        a = core_v3_add(a, phys_field_acceleration(w, at, b->layer[i]));
+    }
+    return a;
+}
+
+static void fill_body(soft *s, uint32_t i) {
+    const phys_bodies *b = &s->world->bodies;
+    float *v = s->bodies.velocity + (size_t)i * 8, *p = s->bodies.push + (size_t)i * 8;
+    memset(s->bodies.moved + (size_t)i * 8, 0, 8 * sizeof(float));
+    memset(s->bodies.inertia + (size_t)i * 8, 0, 8 * sizeof(float));
+    memset(p, 0, 8 * sizeof(float));
+    float row[8] = {b->vx[i], b->vy[i], b->vz[i], 0, b->wx[i], b->wy[i], b->wz[i], 0};
+    memcpy(v, row, sizeof row);
+    memcpy(s->bodies.mark + (size_t)i * 8, row, sizeof row);
+    if (b->type[i] != PHYS_DYNAMIC) {
+        return;
+    }
+    fill_inertia(b, i, s->bodies.inertia + (size_t)i * 8);
+    core_vec3 a = core_v3_scale(pull_on(s->world, i, s->bodies.moved + (size_t)i * 8), s->h);
+    memcpy(p, &a, sizeof a);
+    core_vec3 t = b->torque[i];
+    if (t.x != 0.0f || t.y != 0.0f || t.z != 0.0f) {
+        t = core_v3_scale(phys_body_inverse_inertia(b, i, t), s->h);
+        memcpy(p + 4, &t, sizeof t);
+    }
+}
+
+static void fill_bodies_job(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk,
+                            uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    for (uint32_t i = begin; i < end; i++) {
+        fill_body(ctx, i);
+    }
+}
+
+static void make_damping(soft *s, core_arena *arena, uint32_t n) {
+    const phys_bodies *b = &s->world->bodies;
+    bool any = false;
+    for (uint32_t i = 0; i < n; i++) {
+        any |= b->linear_damping[i] != 0.0f || b->angular_damping[i] != 0.0f;
+    }
+    if (!any) {
+        return;
+    }
+    float *keep = s->bodies.keep = CORE_ARENA_ARRAY(arena, float, ((size_t)n + 2) * 8);
+    for (uint32_t i = 0; i < n + 2; i++) {
+        bool dynamic = i < n && b->type[i] == PHYS_DYNAMIC;
+        float l = dynamic ? 1.0f / (1.0f + b->linear_damping[i] * s->h) : 1.0f;
+        float a = dynamic ? 1.0f / (1.0f + b->angular_damping[i] * s->h) : 1.0f;
+        for (int k = 0; k < 4; k++) {
+            keep[(size_t)i * 8 + (size_t)k] = l;
+            keep[(size_t)i * 8 + 4 + (size_t)k] = a;
+        }
+    }
+}
+
+// Row n is the one that empty lanes point to; one more pads the flat passes to 16 floats.
+static void make_bodies(soft *s) {
+    core_arena *arena = &s->world->scratch;
+    uint32_t n = core_columns_count(&s->world->bodies.set);
+    size_t floats = ((size_t)n + 2) * 8;
+    s->bodies.count = n;
+    s->bodies.velocity = CORE_ARENA_ARRAY(arena, float, floats);
+    s->bodies.moved = CORE_ARENA_ARRAY(arena, float, floats);
+    s->bodies.push = CORE_ARENA_ARRAY(arena, float, floats);
+    s->bodies.mark = CORE_ARENA_ARRAY(arena, float, floats);
+    s->bodies.inertia = CORE_ARENA_ARRAY(arena, float, floats);
+    size_t tail = 16 * sizeof(float), at = (size_t)n * 8;
+    memset(s->bodies.velocity + at, 0, tail);
+    memset(s->bodies.moved + at, 0, tail);
+    memset(s->bodies.push + at, 0, tail);
+    memset(s->bodies.mark + at, 0, tail);
+    memset(s->bodies.inertia + at, 0, tail);
+    core_jobs_for(s->world->jobs, n, 512, fill_bodies_job, s);
+    make_damping(s, arena, n);
+}
+
+// First free colour of both bodies; first fit keeps the number of colours small.
+static soft_place place(soft_group *group, uint64_t (*used)[GROUPS], uint8_t g, uint32_t a,
+                        uint32_t b, bool fixed) {
+    uint64_t taken = used[a][g] | (fixed ? 0 : used[b][g]);
+    uint8_t color = taken == UINT64_MAX ? (uint8_t)SOFT_COLORS : (uint8_t)__builtin_ctzll(~taken);
+    if (color < SOFT_COLORS) {
+        used[a][g] |= (uint64_t)1 << color;
+        used[b][g] |= fixed ? 0 : (uint64_t)1 << color;
+    }
+    return (soft_place){g, color, group[g].lanes[color]++};
+}
+
+static void color_contacts(soft *s) {
+    phys_world *w = s->world;
+    const uint8_t *type = w->bodies.type;
+    uint32_t n = core_columns_count(&w->bodies.set), balls = core_columns_count(&w->balls.set);
+    uint32_t contacts = core_columns_count(&w->contacts.set);
+    uint64_t(*used)[GROUPS] = core_arena_alloc(&w->scratch, sizeof *used * (n + 1), "colours");
+    memset(used, 0, sizeof *used * (n + 1));
+    s->ball_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, balls + 1);
+    s->contact_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, contacts + 1);
+    for (uint32_t i = 0; i < balls; i++) {
+        if (w->balls.separation[i] > 1e29f) {
+            s->ball_place[i].group = GROUPS;
+            continue;
+        }
+        uint32_t a = w->balls.a[i], b = w->balls.b[i];
+        bool fixed = type[b] != PHYS_DYNAMIC;
+        s->bounces |= w->balls.restitution[i] > 0.0f;
+        s->ball_place[i] =
+            place(s->group, used, fixed ? GROUP_FIXED_BALLS : GROUP_BALLS, a, b, fixed);
+    }
+    for (uint32_t i = 0; i < contacts; i++) {
+        if (w->contacts.manifold[i].count == 0) {
+            s->contact_place[i].group = GROUPS;
+            continue;
+        }
+        uint32_t a = w->contacts.a[i], b = w->contacts.b[i];
+        bool flip = type[a] != PHYS_DYNAMIC, fixed = flip || type[b] != PHYS_DYNAMIC;
+        s->bounces |= w->contacts.restitution[i] > 0.0f;
+        s->contact_place[i] = place(s->group, used, fixed ? GROUP_FIXED_MANIFOLDS : GROUP_MANIFOLDS,
+                                    flip ? b : a, flip ? a : b, fixed);
+    }
+}
+
+// Blocks of each colour; the contacts of the last colour get a block each.
+static void make_blocks(soft *s) {
+    core_arena *arena = &s->world->scratch;
+    for (int g = 0; g < GROUPS; g++) {
+        soft_group *group = &s->group[g];
+        uint32_t blocks = 0;
+        for (uint32_t c = 0; c < SOFT_COLORS; c++) {
+            group->first[c] = blocks;
+            blocks += (group->lanes[c] + SOFT_LANES - 1) / SOFT_LANES;
+        }
+        group->first[SOFT_COLORS] = blocks;
+        blocks += group->lanes[SOFT_COLORS];
+        group->first[SOFT_COLORS + 1] = blocks;
+        bool balls = g == GROUP_BALLS || g == GROUP_FIXED_BALLS;
+        size_t size = balls ? sizeof(ball_block) : sizeof(manifold_block);
+        uint8_t *data = core_arena_alloc(arena, size * blocks + 1, "contact blocks");
+        group->balls = balls ? (ball_block *)data : NULL;
+        group->manifolds = balls ? NULL : (manifold_block *)data;
+        for (uint32_t c = 0; c <= SOFT_COLORS; c++) { // lanes that stay empty
+            bool full = c < SOFT_COLORS && group->lanes[c] % SOFT_LANES == 0;
+            uint32_t from = c < SOFT_COLORS ? group->first[c + 1] - 1 : group->first[c];
+            for (uint32_t k = from; !full && k < group->first[c + 1]; k++) {
+                int32_t *index = (int32_t *)(data + size * k);
+                memset(index, 0, size);
+                for (int i = 0; i < 2 * SOFT_LANES; i++) { // a, then b
+                    index[i] = (int32_t)s->bodies.count;
+                }
+            }
+        }
+    }
+}
+
+static uint32_t block_of(const soft_group *group, soft_place p, uint32_t *lane) {
+    *lane = p.color < SOFT_COLORS ? p.lane % SOFT_LANES : 0;
+    return group->first[p.color] + (p.color < SOFT_COLORS ? p.lane / SOFT_LANES : p.lane);
+}
+
+static void fill_ball(soft *s, uint32_t i) {
+    const phys_world *w = s->world;
+    const phys_balls *p = &w->balls;
+    const phys_bodies *b = &w->bodies;
+    if (s->ball_place[i].group == GROUPS) {
+        return;
+    }
+    uint32_t k;
+    soft_group *group = &s->group[s->ball_place[i].group];
+    ball_block *c = &group->balls[block_of(group, s->ball_place[i], &k)];
+    bool fixed = s->ball_place[i].group == GROUP_FIXED_BALLS;
+    uint32_t a = p->a[i], o = p->b[i];
+    float ra = w->shapes.radius[phys_slot_row(&w->shapes.set, p->sa[i])];
+    float rb = fixed ? 0.0f : w->shapes.radius[phys_slot_row(&w->shapes.set, p->sb[i])];
+    c->a[k] = (int32_t)a;
+    c->b[k] = fixed ? (int32_t)s->bodies.count : (int32_t)o;
+    c->nx[k] = p->nx[i];
+    c->ny[k] = p->ny[i];
+    c->nz[k] = p->nz[i];
+    c->gap[k] = p->separation[i];
+    c->jn[k] = p->jn[i];
+    c->jx[k] = p->jx[i];
+    c->jy[k] = p->jy[i];
+    c->jz[k] = p->jz[i];
+    c->ima[k] = b->im[a];
+    c->imb[k] = fixed ? 0.0f : b->im[o];
+    c->ra[k] = ra;
+    c->rb[k] = rb;
+    c->ka[k] = ra * b->ix[a];
+    c->kb[k] = rb * (fixed ? 0.0f : b->ix[o]);
+    c->friction[k] = p->friction[i];
+    c->restitution[k] = p->restitution[i];
+}
+
+static void fill_manifold(soft *s, uint32_t i) {
+    const phys_world *w = s->world;
+    const phys_bodies *b = &w->bodies;
+    if (s->contact_place[i].group == GROUPS) {
+        return;
+    }
+    uint32_t k, a = w->contacts.a[i], o = w->contacts.b[i];
+    soft_group *group = &s->group[s->contact_place[i].group];
+    manifold_block *c = &group->manifolds[block_of(group, s->contact_place[i], &k)];
+    const phys_manifold *m = &w->contacts.manifold[i];
+    bool flip = b->type[a] != PHYS_DYNAMIC;
+    float sign = flip ? -1.0f : 1.0f;
+    core_vec3 n = core_v3_scale(m->normal, sign), rub = core_v3_scale(m->friction, sign), t1, t2;
+    c->a[k] = (int32_t)(flip ? o : a);
+    c->b[k] = (int32_t)(flip ? a : o);
+    c->nx[k] = n.x;
+    c->ny[k] = n.y;
+    c->nz[k] = n.z;
+    c->ima[k] = b->im[flip ? o : a];
+    c->imb[k] = b->im[flip ? a : o];
+    c->count[k] = (float)m->count;
+    c->friction[k] = w->contacts.friction[i];
+    c->restitution[k] = w->contacts.restitution[i];
+    c->twist[k] = m->twist;
+    phys_basis(n, &t1, &t2);
+    c->tangent[0].impulse[k] = core_v3_dot(rub, t1);
+    c->tangent[1].impulse[k] = core_v3_dot(rub, t2);
+    for (uint32_t j = 0; j < 4; j++) {
+        const phys_point *p = &m->point[j];
+        soft_arm *r = &c->point[j];
+        core_vec3 ra = flip ? p->rb : p->ra, rb = flip ? p->ra : p->rb;
+        r->ax[k] = ra.x;
+        r->ay[k] = ra.y;
+        r->az[k] = ra.z;
+        r->bx[k] = rb.x;
+        r->by[k] = rb.y;
+        r->bz[k] = rb.z;
+        r->impulse[k] = p->normal_impulse;
+        c->gap[j][k] = p->separation;
+    }
+}
+
+static void store_ball(soft *s, uint32_t i) {
+    phys_balls *p = &s->world->balls;
+    if (s->ball_place[i].group != GROUPS) {
+        uint32_t k;
+        const soft_group *group = &s->group[s->ball_place[i].group];
+        const ball_block *c = &group->balls[block_of(group, s->ball_place[i], &k)];
+        p->jn[i] = c->jn[k];
+        p->jx[i] = c->jx[k];
+        p->jy[i] = c->jy[k];
+        p->jz[i] = c->jz[k];
+    }
+}
+
+static void store_manifold(soft *s, uint32_t i) {
+    phys_manifold *m = &s->world->contacts.manifold[i];
+    if (s->contact_place[i].group == GROUPS) {
+        return;
+    }
+    uint32_t k;
+    const soft_group *group = &s->group[s->contact_place[i].group];
+    const manifold_block *c = &group->manifolds[block_of(group, s->contact_place[i], &k)];
+    float sign = s->world->bodies.type[s->world->contacts.a[i]] != PHYS_DYNAMIC ? -1.0f : 1.0f;
+    float j1 = sign * c->tangent[0].impulse[k], j2 = sign * c->tangent[1].impulse[k];
+    m->friction = core_v3(c->tx[0][k] * j1 + c->tx[1][k] * j2, c->ty[0][k] * j1 + c->ty[1][k] * j2,
+                          c->tz[0][k] * j1 + c->tz[1][k] * j2);
+    m->twist = c->twist[k];
+    for (uint32_t j = 0; j < m->count; j++) {
+        m->point[j].normal_impulse = c->point[j].impulse[k];
+    }
+}
+
+typedef void each_fn(soft *s, uint32_t i);
+typedef struct each_job {
+    soft *s;
+    each_fn *fn;
+} each_job;
+static void run_each(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const each_job *job = ctx;
+    for (uint32_t i = begin; i < end; i++) {
+        job->fn(job->s, i);
+    }
+}
+static void each(soft *s, uint32_t count, each_fn *fn) {
+    core_jobs_for(s->world->jobs, count, 256, run_each, &(each_job){s, fn});
+}
+
+typedef struct pass_job {
+    soft *s;
+    soft_pass pass;
+    int group;
+    uint32_t first;
+} pass_job;
+
+static void run_blocks(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const pass_job *job = ctx;
+    soft *s = job->s;
+    const soft_group *g = &s->group[job->group];
+    bool fixed = job->group >= GROUP_FIXED_BALLS;
+    const soft_spring *spring = fixed ? &s->spring_fixed : &s->spring;
+    uint32_t from = job->first + begin, count = end - begin;
+    if (g->balls != NULL) {
+        s->run_balls(g->balls + from, count, &s->bodies, spring, job->pass, fixed);
+    } else {
+        s->run_manifolds(g->manifolds + from, count, &s->bodies, spring, job->pass, fixed);
+    }
+}
+
+// Colour after colour; contacts with what cannot move come last and so have the last word.
+static void run_pass(soft *s, soft_pass pass) {
+    for (int g = 0; g < GROUPS; g++) {
+        const soft_group *group = &s->group[g];
+        for (uint32_t c = 0; c < SOFT_COLORS && group->lanes[c] != 0; c++) {
+            uint32_t count = group->first[c + 1] - group->first[c];
+            pass_job job = {s, pass, g, group->first[c]};
+            core_jobs_for(s->world->jobs, count, 8, run_blocks, &job);
+        }
+        pass_job job = {s, pass, g, group->first[SOFT_COLORS]};
+        run_blocks(&job, 0, group->lanes[SOFT_COLORS], 0, 0);
+    }
+}
+
+typedef struct flat_job {
+    soft *s;
+    soft_flat_fn *fn;
+} flat_job;
+static void run_flat(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const flat_job *job = ctx;
+    job->fn(&job->s->bodies, begin * 16, end * 16, job->s->h);
+}
+static void flat(soft *s, soft_flat_fn *fn) { // two bodies at a time: 16 floats
+    core_jobs_for(s->world->jobs, (s->bodies.count + 1) / 2, 1024, run_flat, &(flat_job){s, fn});
+}
+
+static void refresh_fields(soft *s) {
+    const phys_bodies *b = &s->world->bodies;
+    for (uint32_t i = 0; i < s->bodies.count; i++) {
+        if (b->type[i] == PHYS_DYNAMIC) {
+            core_vec3 a = pull_on(s->world, i, s->bodies.moved + (size_t)i * 8);
+            a = core_v3_scale(a, s->h);
+            memcpy(s->bodies.push + (size_t)i * 8, &a, sizeof a);
+        }
+    }
+}
+
+// Writes a body back. Where nothing was touched the way gets the exact term of the constant part of
+// the pull, and the turn follows the free rigid body; elsewhere it is the sum of the substeps.
+static void finish_body(soft *s, uint32_t i) {
+    phys_world *w = s->world;
+    phys_bodies *b = &w->bodies;
+    if (b->type[i] == PHYS_STATIC) {
+        return;
+    }
+    const float *v = s->bodies.velocity + (size_t)i * 8, *p = s->bodies.moved + (size_t)i * 8;
+    core_vec3 way = core_v3(p[0], p[1], p[2]), turn = core_v3(p[4], p[5], p[6]);
+    phys_put3(b->vx, b->vy, b->vz, i, core_v3(v[0], v[1], v[2]));
+    phys_put3(b->wx, b->wy, b->wz, i, core_v3(v[4], v[5], v[6]));
+    bool free = b->touching[i] == 0;
+    if (free && b->type[i] == PHYS_DYNAMIC) {
+        core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
+        a = core_v3_mad(a, b->force[i], b->im[i]);
+        way = core_v3_mad(way, a, -0.5f * s->h * s->dt);
+    }
+    phys_put3(b->cx, b->cy, b->cz, i, core_v3_add(phys_get3(b->cx, b->cy, b->cz, i), way));
+    phys_finish_rotation(b, i, turn, s->dt, free);
+}
+
+static void solve_substeps(soft *s, int substeps) {
+    bool fields = core_columns_count(&s->world->fields.set) != 0;
+    for (int k = 0; k < substeps; k++) {
+        if (fields && k > 0) {
+            refresh_fields(s);
+        }
+        flat(s, s->push);
+        if (k == 0) {
+            run_pass(s, SOFT_WARM);
+        }
+        run_pass(s, SOFT_SOLVE);
+        flat(s, s->move);
+        run_pass(s, SOFT_RELAX);
+    }
+    if (s->bounces) {
+        run_pass(s, SOFT_RESTITUTE);
+    }
+}
+
+static void step_soft(phys_world *w, float dt) {
+    size_t mark = core_arena_mark(&w->scratch);
+    int substeps = w->substeps ? w->substeps : w->solver->substeps;
+    soft s = {.world = w, .dt = dt, .h = dt / (float)substeps};
+    s.spring = make_spring(s.h, STIFFNESS);
+    s.spring_fixed = make_spring(s.h, 2.0f * STIFFNESS);
+    s.run_balls = CORE_SIMD_SELECT(phys_soft_balls);
+    s.run_manifolds = CORE_SIMD_SELECT(phys_soft_manifolds);
+    s.push = CORE_SIMD_SELECT(phys_soft_push);
+    s.move = CORE_SIMD_SELECT(phys_soft_move);
+    make_bodies(&s);
+    color_contacts(&s);
+    make_blocks(&s);
+    each(&s, core_columns_count(&w->balls.set), fill_ball);
+    each(&s, core_columns_count(&w->contacts.set), fill_manifold);
+    solve_substeps(&s, substeps);
+    each(&s, core_columns_count(&w->balls.set), store_ball);
+    each(&s, core_columns_count(&w->contacts.set), store_manifold);
+    each(&s, s.bodies.count, finish_body);
+    core_arena_rewind(&w->scratch, mark);
+}
+
+const phys_solver_method phys_solver_soft = {"soft", 8, 0, step_soft};
