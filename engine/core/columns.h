@@ -34,6 +34,7 @@ typedef struct core_columns {
     void *data[CORE_COLUMNS_MAX];
 } core_columns;
 
+// name and column are borrowed. False + core_fail for bad counts or when no range can be reserved.
 bool core_columns_init(core_columns *set, const char *name, const core_column *column,
                        uint32_t column_count, uint32_t capacity);
 void core_columns_release(core_columns *set);

@@ -10,7 +10,6 @@
 
 #define SPIN_NS         20000u
 #define SPINS_PER_CLOCK 32
-#define CACHE_LINE      64
 
 #if defined(__x86_64__) || defined(__i386__)
 #define CPU_RELAX() __builtin_ia32_pause()
@@ -21,16 +20,20 @@
 // A job is published by `ticket` = epoch << 32 | chunks not yet claimed. Claiming is a
 // compare-and-swap that counts down, so it succeeds only while that very job has chunks left; the
 // job cannot end before the claimed chunk has run, so the fields read before the swap were this
-// job's. A worker that wakes late finds an older epoch or no chunks, and touches nothing.
+// job's. A worker that wakes late finds an older epoch or no chunks, and touches nothing. The gaps
+// keep what different threads write on different cache lines.
 struct core_jobs {
-    _Alignas(CACHE_LINE) _Atomic uint64_t ticket;
-    _Alignas(CACHE_LINE) _Atomic uint32_t unfinished; // chunks that have not run to their end
-    _Alignas(CACHE_LINE) _Atomic(core_job_fn *) fn;
+    _Atomic uint64_t ticket;
+    char gap_a[CORE_ALIGN];
+    _Atomic uint32_t unfinished; // chunks that have not run to their end
+    char gap_b[CORE_ALIGN];
+    _Atomic(core_job_fn *) fn;
     _Atomic(void *) ctx;
     _Atomic uint32_t count, grain, chunks;
     uint32_t epoch; // the caller's
 
-    _Alignas(CACHE_LINE) pthread_mutex_t lock;
+    char gap_c[CORE_ALIGN];
+    pthread_mutex_t lock;
     pthread_cond_t work; // workers wait here for a new ticket
     pthread_cond_t done; // the caller waits here for the last chunk
     _Atomic uint32_t sleeping;

@@ -7,6 +7,7 @@
 
 #define CORE_JOBS_MAX_THREADS 64
 
+// Serves one calling thread at a time; worlds on several threads have one each.
 typedef struct core_jobs core_jobs;
 
 // threads: workers including the caller, 1..64; 0 = number of processors. Idle workers spin at
