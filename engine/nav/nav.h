@@ -1,0 +1,192 @@
+// Navigation: waypoint graphs and uniform grids, searches on them, paths that follow changes, and
+// agents that walk. SI units: metres, seconds, radians; +Y up, agents turn about +Y. The same
+// build, graph and calls give the same bits: ties go to the smaller id, costs are sums in double.
+//
+// No function allocates once graphs, paths and agents have reached their size.
+#ifndef NAV_NAV_H
+#define NAV_NAV_H
+
+#include "core/columns.h"
+#include "core/jobs.h"
+#include "core/math.h"
+#include "core/metrics.h"
+
+#define NAV_NO_NODE      UINT32_MAX
+#define NAV_REPORT_LINKS 8u // the cap on neighbours of the report's graph (4.2), as a mode
+#define NAV_MAX_LINKS    65535u
+
+typedef struct nav_world nav_world;
+typedef core_handle nav_graph;
+typedef core_handle nav_grid;
+typedef core_handle nav_path;
+typedef core_handle nav_agent;
+
+typedef struct nav_world_desc {
+    core_jobs *jobs;       // NULL: serial. Borrowed
+    core_metrics *metrics; // NULL: unmeasured. Borrowed
+    uint32_t max_agents;   // default 1 << 16 (address space only)
+    uint32_t cookie;
+} nav_world_desc;
+nav_world_desc nav_world_desc_default(void);
+nav_world *nav_world_create(const nav_world_desc *desc); // NULL + core_fail
+void nav_world_destroy(nav_world *world);
+// Plans paths whose graph changed, then moves agents by dt seconds, finite, > 0, <= 1.
+bool nav_world_step(nav_world *world, float dt);
+// Settings: "heuristic" (euclid, octile, zero), "weight" (1..10), "avoidance" (orca, none).
+bool nav_world_set(nav_world *world, const char *name, const char *value);
+// NULL-terminated names of a method kind: "heuristic", "grid", "avoidance".
+const char *const *nav_method_names(const char *kind);
+int nav_world_state(const nav_world *world, const core_columns **out, int capacity);
+size_t nav_world_bytes(const nav_world *world);
+void nav_world_counts(const nav_world *world, core_metrics *metrics); // nav_nodes, agents, paths
+
+// ---- graphs ----
+// A node's id is its number in order of creation; it stays the same for the graph's life and is
+// never given again. Links are directed, ordered by creation, and cost at least 0.
+typedef struct nav_graph_desc {
+    const char *name;   // for print and errors; cut to 31 bytes
+    uint32_t max_nodes; // default 1 << 20 (address space only)
+    uint32_t max_links; // links of one node: default NAV_MAX_LINKS; NAV_REPORT_LINKS as the report
+    uint32_t cookie;
+} nav_graph_desc;
+nav_graph_desc nav_graph_desc_default(void);
+nav_graph nav_graph_create(nav_world *world, const nav_graph_desc *desc); // null + core_fail
+// Paths of the graph are left without one (NAV_INVALID).
+bool nav_graph_destroy(nav_world *world, nav_graph graph);
+bool nav_graph_alive(const nav_world *world, nav_graph graph);
+
+// NAV_NO_NODE + core_fail for positions that are not finite and full graphs.
+uint32_t nav_graph_add_node(nav_world *world, nav_graph graph, core_vec3 position);
+// Removes the node with all links to and from it; its id becomes invalid. Visits every link.
+bool nav_graph_remove_node(nav_world *world, nav_graph graph, uint32_t node);
+bool nav_graph_move_node(nav_world *world, nav_graph graph, uint32_t node, core_vec3 position);
+// Links a and b both ways at the cost of their distance. All or nothing: false + core_fail when
+// either is no node, a = b, one is linked to the other already, or has no room (max_links).
+bool nav_graph_connect(nav_world *world, nav_graph graph, uint32_t a, uint32_t b);
+// Removes the links between a and b in both directions; false + core_fail when there was none.
+bool nav_graph_disconnect(nav_world *world, nav_graph graph, uint32_t a, uint32_t b);
+// One way, cost finite and >= 0. A cost below the distance is allowed (a lift, a portal): searches
+// then weaken their heuristic for the whole graph, so that results stay optimal.
+bool nav_graph_link(nav_world *world, nav_graph graph, uint32_t from, uint32_t to, float cost);
+bool nav_graph_unlink(nav_world *world, nav_graph graph, uint32_t from, uint32_t to);
+bool nav_graph_set_cost(nav_world *world, nav_graph graph, uint32_t from, uint32_t to, float cost);
+// A closed link (a door) stays in its place but is not walked.
+bool nav_graph_set_open(nav_world *world, nav_graph graph, uint32_t from, uint32_t to, bool open);
+
+typedef struct nav_link {
+    uint32_t to;
+    float cost;
+    bool open;
+} nav_link;
+uint32_t nav_graph_node_count(const nav_world *world, nav_graph graph); // that exist now
+uint32_t nav_graph_id_end(const nav_world *world, nav_graph graph);     // ids are below this
+bool nav_graph_node_exists(const nav_world *world, nav_graph graph, uint32_t node);
+bool nav_graph_position(const nav_world *world, nav_graph graph, uint32_t node, core_vec3 *out);
+uint32_t nav_graph_link_count(const nav_world *world, nav_graph graph, uint32_t node);
+// Link number n of a node in order of creation; false + core_fail when there is none.
+bool nav_graph_link_at(const nav_world *world, nav_graph graph, uint32_t node, uint32_t n,
+                       nav_link *out);
+// Node nearest to a point (Euclidean; the smaller id when equal), within max_distance (0: any).
+// NAV_NO_NODE when there is none, without an error.
+uint32_t nav_graph_nearest(const nav_world *world, nav_graph graph, core_vec3 point,
+                           float max_distance);
+// Changes with every change of the graph; paths compare it.
+uint64_t nav_graph_version(const nav_world *world, nav_graph graph);
+// Name, nodes, positions, links and costs as text, one node a line. Returns the bytes the whole
+// text takes without its terminating zero, as snprintf does.
+size_t nav_graph_print(const nav_world *world, nav_graph graph, char *out, size_t size);
+
+// ---- search ----
+typedef enum nav_status {
+    NAV_INVALID, // a bad description, or the graph is gone
+    NAV_FOUND,
+    NAV_PARTIAL, // no way to the goal: the path leads to the reachable node nearest to it
+    NAV_NO_PATH,
+    NAV_LIMIT // max_expansions were not enough; a partial path if asked for
+} nav_status;
+const char *nav_status_name(nav_status status);
+
+typedef enum nav_heuristic { NAV_EUCLID, NAV_OCTILE, NAV_ZERO } nav_heuristic;
+
+typedef struct nav_query {
+    nav_graph graph;
+    uint32_t start, goal;
+    nav_heuristic heuristic;
+    float weight;            // >= 1; 0: 1. The cost is at most weight times the optimum
+    bool partial;            // give a way to the nearest reachable node when there is no way
+    uint32_t max_expansions; // 0: no limit
+    uint32_t cookie;
+} nav_query;
+nav_query nav_query_default(void); // with the world's "euclid" and weight 1
+
+typedef struct nav_result {
+    nav_status status;
+    double cost;    // of the path found
+    uint32_t count; // nodes of the path, start and end included
+    uint32_t expanded;
+    uint32_t reached; // its last node
+} nav_result;
+
+// A* (Hart, Nilsson, Raphael, "A formal basis for the heuristic determination of minimum cost
+// paths", IEEE TSSC 4, 1968) with an indexed 4-ary heap, no recursion. Writes the first `capacity`
+// nodes of the path into out (may be NULL). False + core_fail only for bad queries (NAV_INVALID).
+// One query at a time in a world.
+bool nav_graph_search(nav_world *world, const nav_query *query, nav_result *result, uint32_t *out,
+                      uint32_t capacity);
+
+// ---- paths ----
+// A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when
+// its graph has changed; nav_path_update does so at once.
+nav_path nav_path_create(nav_world *world, nav_graph graph, core_vec3 start, core_vec3 goal);
+bool nav_path_destroy(nav_world *world, nav_path path);
+bool nav_path_alive(const nav_world *world, nav_path path);
+bool nav_path_set(nav_world *world, nav_path path, core_vec3 start, core_vec3 goal);
+nav_status nav_path_update(nav_world *world, nav_path path);
+nav_status nav_path_status(const nav_world *world, nav_path path);
+double nav_path_cost(const nav_world *world, nav_path path); // of its links
+uint32_t nav_path_count(const nav_world *world, nav_path path);
+uint32_t nav_path_node(const nav_world *world, nav_path path, uint32_t i); // NAV_NO_NODE beyond
+// Times it has been planned: changes when the nodes may have.
+uint32_t nav_path_plans(const nav_world *world, nav_path path);
+
+// ---- agents ----
+typedef enum nav_agent_state {
+    NAV_AGENT_IDLE,
+    NAV_AGENT_WALKING,
+    NAV_AGENT_ARRIVED,
+    // No way, or no progress for two seconds. It tries on: a change of the graph or room to move
+    // makes it walk again.
+    NAV_AGENT_STUCK
+} nav_agent_state;
+const char *nav_agent_state_name(nav_agent_state state);
+
+typedef struct nav_agent_desc {
+    core_vec3 position;
+    float radius;       // m, default 0.3
+    float max_speed;    // m/s, default 1.5
+    float acceleration; // m/s^2, also braking; default 8
+    float turn_rate;    // rad/s; 0: turns at once
+    float arrive;       // m from the goal, default 0.1
+    float heading;      // rad about +Y, 0 looks along -Z
+    // Its position is written by its owner (a body) before each step; the agent gives a velocity.
+    bool driven;
+    uint32_t cookie;
+} nav_agent_desc;
+nav_agent_desc nav_agent_desc_default(void);
+nav_agent nav_agent_create(nav_world *world, const nav_agent_desc *desc);
+bool nav_agent_destroy(nav_world *world, nav_agent agent);
+bool nav_agent_alive(const nav_world *world, nav_agent agent);
+// Walks on a graph to a point: to the node nearest to it, then straight to it.
+bool nav_agent_go(nav_world *world, nav_agent agent, nav_graph graph, core_vec3 goal);
+bool nav_agent_stop(nav_world *world, nav_agent agent);
+nav_agent_state nav_agent_status(const nav_world *world, nav_agent agent);
+bool nav_agent_position(const nav_world *world, nav_agent agent, core_vec3 *out);
+bool nav_agent_set_position(nav_world *world, nav_agent agent, core_vec3 position);
+bool nav_agent_velocity(const nav_world *world, nav_agent agent, core_vec3 *out);
+bool nav_agent_heading(const nav_world *world, nav_agent agent, float *out);
+bool nav_agent_set_max_speed(nav_world *world, nav_agent agent, float speed);
+// Its path, null when it never went anywhere.
+nav_path nav_agent_path(const nav_world *world, nav_agent agent);
+uint32_t nav_agent_count(const nav_world *world);
+
+#endif

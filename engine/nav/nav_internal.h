@@ -1,0 +1,162 @@
+// What the files of engine/nav share.
+#ifndef NAV_NAV_INTERNAL_H
+#define NAV_NAV_INTERNAL_H
+
+#include "nav/nav.h"
+
+#define NAV_WORLD_COOKIE 0x4e41560au
+#define NAV_GRAPH_COOKIE 0x4e41560bu
+#define NAV_QUERY_COOKIE 0x4e41560cu
+#define NAV_AGENT_COOKIE 0x4e41560du
+
+// A node's links lie in one block of the link set, `links` of them in use, in order of creation.
+#define NAV_NODE_COLUMNS(X)                                                                        \
+    X(float, px, CORE_COLUMN_STATE)                                                                \
+    X(float, py, CORE_COLUMN_STATE)                                                                \
+    X(float, pz, CORE_COLUMN_STATE)                                                                \
+    X(uint32_t, first, CORE_COLUMN_STATE)                                                          \
+    X(uint32_t, links, CORE_COLUMN_STATE)                                                          \
+    X(uint32_t, room, CORE_COLUMN_STATE) /* size of the block, 0 or a power of two */              \
+    X(uint32_t, exists, CORE_COLUMN_STATE)                                                         \
+    X(uint32_t, next, 0) /* in its cell of the grid for nav_graph_nearest */
+CORE_COLUMNS_DECLARE(nav_nodes, NAV_NODE_COLUMNS)
+
+#define NAV_LINK_COLUMNS(X)                                                                        \
+    X(uint32_t, to, CORE_COLUMN_STATE)                                                             \
+    X(float, cost, CORE_COLUMN_STATE)                                                              \
+    X(uint32_t, open, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(nav_links, NAV_LINK_COLUMNS)
+
+#define NAV_BLOCK_SIZES 17 // blocks of 1, 2, 4, ... 65536 links
+
+typedef struct nav_graph_head {
+    uint64_t version;
+    double ratio[2]; // least cost / distance over the links there ever were, by heuristic
+    uint32_t nodes;  // that exist
+    uint32_t max_links;
+    uint32_t free_block[NAV_BLOCK_SIZES]; // first link of a free block, + 1
+    uint32_t unused;
+} nav_graph_head;
+
+typedef struct nav_cells { // uniform grid over x and z, hashed; follows from the nodes
+    uint32_t *head;        // [size] first node of a bucket, + 1
+    uint32_t size;         // power of two, 0: not built
+    uint32_t planned_for;  // nodes it was sized for
+    float cell;            // m
+} nav_cells;
+
+typedef struct nav_graph_data {
+    char name[32];
+    nav_nodes node;
+    nav_links link;
+    nav_cells cells;
+} nav_graph_data;
+
+#define NAV_GRAPH_COLUMNS(X)                                                                       \
+    X(nav_graph_head, head, CORE_COLUMN_STATE)                                                     \
+    X(nav_graph_data *, data, 0)
+CORE_COLUMNS_DECLARE(nav_graphs, NAV_GRAPH_COLUMNS)
+
+typedef struct nav_path_head {
+    core_handle graph;
+    uint64_t version; // of the graph when it was planned
+    double cost;
+    core_vec3 start, goal;
+    uint32_t status, count, plans;
+    uint32_t nodes_hash; // of the list below, which is not a column
+} nav_path_head;
+typedef struct nav_path_nodes {
+    uint32_t *node;
+    uint32_t capacity;
+} nav_path_nodes;
+#define NAV_PATH_COLUMNS(X)                                                                        \
+    X(nav_path_head, head, CORE_COLUMN_STATE)                                                      \
+    X(nav_path_nodes, nodes, 0)
+CORE_COLUMNS_DECLARE(nav_paths, NAV_PATH_COLUMNS)
+
+#define NAV_AGENT_COLUMNS(X)                                                                       \
+    X(float, px, CORE_COLUMN_STATE)                                                                \
+    X(float, py, CORE_COLUMN_STATE)                                                                \
+    X(float, pz, CORE_COLUMN_STATE)                                                                \
+    X(float, vx, CORE_COLUMN_STATE)                                                                \
+    X(float, vy, CORE_COLUMN_STATE)                                                                \
+    X(float, vz, CORE_COLUMN_STATE)                                                                \
+    X(float, hx, CORE_COLUMN_STATE) /* heading, unit */                                            \
+    X(float, hz, CORE_COLUMN_STATE)                                                                \
+    X(float, radius, CORE_COLUMN_STATE)                                                            \
+    X(float, max_speed, CORE_COLUMN_STATE)                                                         \
+    X(float, acceleration, CORE_COLUMN_STATE)                                                      \
+    X(float, turn_rate, CORE_COLUMN_STATE)                                                         \
+    X(float, arrive, CORE_COLUMN_STATE)                                                            \
+    X(float, gx, CORE_COLUMN_STATE) /* goal */                                                     \
+    X(float, gy, CORE_COLUMN_STATE)                                                                \
+    X(float, gz, CORE_COLUMN_STATE)                                                                \
+    X(float, ax, CORE_COLUMN_STATE) /* where it was when it last made progress */                  \
+    X(float, ay, CORE_COLUMN_STATE)                                                                \
+    X(float, az, CORE_COLUMN_STATE)                                                                \
+    X(float, stalled, CORE_COLUMN_STATE) /* s since then */                                        \
+    X(uint32_t, state, CORE_COLUMN_STATE)                                                          \
+    X(uint32_t, corner, CORE_COLUMN_STATE)  /* number of the path's node it walks to */            \
+    X(uint32_t, corners, CORE_COLUMN_STATE) /* nodes of the path that it uses */                   \
+    X(uint32_t, plans, CORE_COLUMN_STATE)   /* of the path when `corner` was set */                \
+    X(uint32_t, driven, CORE_COLUMN_STATE)                                                         \
+    X(core_handle, path, CORE_COLUMN_STATE)                                                        \
+    X(float, wx, 0) /* velocity wanted in this step */                                             \
+    X(float, wz, 0)                                                                                \
+    X(float, slope, 0) /* height for ground covered */                                             \
+    X(float, lift, 0)  /* m/s straight up */                                                       \
+    X(float, nx, 0)    /* velocity after avoidance */                                              \
+    X(float, nz, 0)
+CORE_COLUMNS_DECLARE(nav_agents, NAV_AGENT_COLUMNS)
+
+// Search scratch: one record a node, valid where `stamp` is the query's.
+typedef struct nav_record {
+    double g, h;
+    uint32_t parent;
+    uint32_t stamp;
+    uint32_t place; // in the heap; NAV_NO_NODE when expanded
+    uint32_t unused;
+} nav_record;
+typedef struct nav_heap_entry {
+    double f;
+    uint32_t node;
+    uint32_t unused;
+} nav_heap_entry;
+typedef struct nav_scratch {
+    nav_record *record; // [capacity]
+    nav_heap_entry *heap;
+    uint32_t capacity;
+    uint32_t stamp; // of the last query; records are cleared when it wraps
+} nav_scratch;
+
+struct nav_world {
+    core_jobs *jobs;
+    core_metrics *metrics;
+    nav_graphs graph;
+    nav_paths path;
+    nav_agents agent;
+    nav_scratch scratch;
+    nav_heuristic heuristic; // of paths
+    float weight;
+    bool avoid;
+};
+
+// Row of a live graph, CORE_NO_ROW + core_fail for others.
+uint32_t nav_graph_row(const nav_world *world, nav_graph graph);
+// nav_nearest.c
+void nav_cells_add(nav_graph_data *g, uint32_t node);
+void nav_cells_remove(nav_graph_data *g, uint32_t node);
+void nav_cells_release(nav_cells *cells);
+// nav_search.c
+void nav_scratch_fit(nav_scratch *scratch, uint32_t nodes);
+void nav_scratch_release(nav_scratch *scratch);
+// Nodes of the way that the last search found to `end`, the first `capacity` of `count`.
+void nav_search_nodes(const nav_world *world, uint32_t end, uint32_t count, uint32_t *out,
+                      uint32_t capacity);
+double nav_octile(double dx, double dy, double dz);
+// nav_path.c
+void nav_path_refresh(nav_world *world, uint32_t row); // plans when its graph has changed
+// nav_agent.c
+void nav_agents_step(nav_world *world, float dt);
+
+#endif
