@@ -1,3 +1,6 @@
 #include "app/lab_kernels.h"
 
-const core_lab_kernel *const app_lab_kernels[] = {&core_lab_math, &core_lab_layout, NULL};
+#include "phys/lab.h"
+
+const core_lab_kernel *const app_lab_kernels[] = {&core_lab_math, &core_lab_layout,
+                                                  &phys_lab_motion, NULL};

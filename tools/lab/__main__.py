@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import experiment  # noqa: E402
 import judge  # noqa: E402
+import references  # noqa: E402
 import run as runner  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -89,6 +90,9 @@ def run_experiment(args, exp, client):
                 for label, point in exp.points() for seed in seeds]
 
     accuracy = runner.run_all(commands(exp.seeds, False), cases, args.jobs, client, exp.name)
+    if exp.reference:
+        params = [exp.params(label, point, seed) for label, point in exp.points() for seed in exp.seeds]
+        accuracy = [references.judge(exp.reference, p, figures) for p, figures in zip(params, accuracy)]
     timing = None
     if exp.cost and not args.no_timing:
         timing = runner.time_all(commands(exp.seeds[:1], True), cases, exp.repeats, f"{exp.name}: time")
@@ -106,7 +110,8 @@ def run_map(args, exp, client):
 
     def run(params):
         words = [runner.command_of(args.corsac, exp, p, False) for p in params]
-        return runner.run_all(words, cases, args.jobs, client, exp.name)
+        found = runner.run_all(words, cases, args.jobs, client, exp.name)
+        return [references.judge(exp.reference, p, f) for p, f in zip(params, found)] if exp.reference else found
 
     result = maps.build(exp, run)
     words = [f"{label}: {m['stable']} of {len(m['samples'])} samples stable" for label, m in result["methods"].items()]

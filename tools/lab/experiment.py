@@ -12,6 +12,8 @@ seeds, repeats        of accuracy and of timing
 [chart]               panel = sweep name (one panel each), line = "method" (default), x, y
 [[expect]]            assertions, see judge.py
 [map]                 a stability map, see maps.py
+reference             name in references.py: adds figures by a known answer
+[binaries]            NAME = path of another build; a method takes it by `binary = NAME`
 """
 
 import hashlib
@@ -21,7 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 KNOWN = {"title", "question", "kernel", "scene", "quick", "docs", "fixed", "methods", "sweep", "quick_sweep",
-         "error", "cost", "seeds", "repeats", "chart", "expect", "map", "needs", "binaries"}
+         "error", "cost", "seeds", "repeats", "chart", "expect", "map", "binaries", "reference"}
 
 
 class BadExperiment(Exception):
@@ -49,6 +51,7 @@ class Experiment:
     docs: bool
     digest: str
     binaries: dict = field(default_factory=dict)
+    reference: str | None = None
 
     def points(self):
         """(method label, sweep values) for every row of the result."""
@@ -91,4 +94,5 @@ def load(path, quick=False):
         error=raw.get("error", {}), cost=raw.get("cost", {}), seeds=raw.get("seeds", [1]),
         repeats=raw.get("repeats", 3), chart=raw.get("chart", {}), expect=raw.get("expect", []),
         map=raw.get("map", {}), quick=raw.get("quick", False), docs=raw.get("docs", False),
-        digest=hashlib.sha256(text).hexdigest()[:16], binaries=raw.get("binaries", {}))
+        digest=hashlib.sha256(text).hexdigest()[:16], binaries=raw.get("binaries", {}),
+        reference=raw.get("reference"))
