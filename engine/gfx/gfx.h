@@ -34,9 +34,9 @@ void gfx_world_counts(const gfx_world *world,
 //   clusters    cells as XxYxZ, each 1..64, default 16x9x24
 //   slices      exponential | linear
 //   first_slice m, the end of the first exponential slice, default 5; 0: none, all from the near
-//   plane assign      naive | per_light: how lights are assigned to cells exposure    factor before
-//   the tone map, > 0, default 1 tonemap     neutral (Khronos PBR Neutral) | linear instancing  on
-//   | off (off: one draw call per instance; the baseline of the draw-count chart)
+//   plane assign      naive | per_light | simd: how lights are assigned to cells exposure    factor
+//   before the tone map, > 0, default 1 tonemap     neutral (Khronos PBR Neutral) | linear
+//   instancing  on | off (off: one draw call per instance; the baseline of the draw-count chart)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);
 
 typedef enum gfx_light_type { GFX_POINT, GFX_SPOT, GFX_DIRECTIONAL } gfx_light_type;

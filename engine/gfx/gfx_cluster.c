@@ -1,11 +1,8 @@
 // The grid, the storage of lists, and the two scalar methods of assignment.
 #include "gfx/gfx_cluster.h"
+#include "gfx/gfx_cluster_wide.h"
 
 #include <string.h>
-
-// The shader finds a fragment's cell from rounded coordinates; bounds are widened by these parts of
-// a column, row or slice.
-static const float column_margin = 1e-3f, slice_margin = 2e-3f;
 
 void gfx_cluster_grid_make(gfx_cluster_grid *g, const uint32_t size[3], bool linear,
                            float first_slice, bool orthographic, float tan_x, float tan_y,
@@ -62,7 +59,7 @@ uint32_t gfx_cluster_cell(const gfx_cluster_grid *g, float u, float v, float dep
 }
 
 const char *gfx_cluster_method_name(gfx_cluster_method method) {
-    static const char *const names[GFX_CLUSTER_METHODS] = {"naive", "per_light"};
+    static const char *const names[GFX_CLUSTER_METHODS] = {"naive", "per_light", "simd"};
     return names[method];
 }
 
@@ -78,7 +75,7 @@ static void *room(void **block, size_t *bytes, size_t need) {
 }
 
 void gfx_cluster_lights_release(gfx_cluster_lights *lights) {
-    core_free(lights->x);
+    core_free(lights->block);
     *lights = (gfx_cluster_lights){0};
 }
 
@@ -86,7 +83,8 @@ void gfx_cluster_lights_reserve(gfx_cluster_lights *lights, uint32_t count) {
     if (count > lights->capacity) {
         gfx_cluster_lights_release(lights);
         size_t n = ((size_t)count + count / 2 + CORE_LANES - 1) / CORE_LANES * CORE_LANES;
-        lights->x = core_alloc(4 * n * sizeof(float));
+        lights->block = core_alloc(4 * n * sizeof(float) + CORE_ALIGN);
+        lights->x = gfx_cluster_align(lights->block);
         lights->y = lights->x + n;
         lights->depth = lights->y + n;
         lights->radius = lights->depth + n;
@@ -99,16 +97,17 @@ void gfx_clusters_release(gfx_clusters *c) {
     core_free(c->offset);
     core_free(c->light);
     core_free(c->scratch);
+    gfx_clusters_wide_release(c);
     *c = (gfx_clusters){0};
 }
 
-static void reserve_offsets(gfx_clusters *c, uint32_t cells) {
+void gfx_clusters_reserve_offsets(gfx_clusters *c, uint32_t cells) {
     void *p = c->offset;
     c->offset = room(&p, &c->offset_bytes, (cells + 1) * sizeof *c->offset);
     memset(c->offset, 0, (cells + 1) * sizeof *c->offset);
 }
 
-static void reserve_lights(gfx_clusters *c, size_t total) {
+void gfx_clusters_reserve_lights(gfx_clusters *c, size_t total) {
     void *p = c->light;
     c->light = room(&p, &c->light_bytes, total * sizeof *c->light);
     c->total = (uint32_t)total;
@@ -152,7 +151,7 @@ static bool box_touches(const box *b, float x, float y, float z, float r) {
 
 static void naive(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_cluster_lights *l) {
     uint32_t cells = gfx_cluster_cells(g), cell = 0;
-    reserve_offsets(c, cells);
+    gfx_clusters_reserve_offsets(c, cells);
     for (int pass = 0; pass < 2; ++pass) { // count, then write
         cell = 0;
         for (uint32_t k = 0; k < g->slices; ++k) {
@@ -173,7 +172,7 @@ static void naive(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_cluster_
             }
         }
         if (pass == 0) {
-            reserve_lights(c, c->offset[cells]);
+            gfx_clusters_reserve_lights(c, c->offset[cells]);
         }
     }
 }
@@ -223,8 +222,8 @@ static interval span_bounds(float s, float d, float r, float a, float b) {
 
 static bool tile_range(interval bounds, float half, uint32_t count, uint8_t *first, uint8_t *last) {
     float scale = 0.5f * (float)count / half, mid = 0.5f * (float)count;
-    float lo = bounds.lo * scale + mid - column_margin,
-          hi = bounds.hi * scale + mid + column_margin;
+    float lo = bounds.lo * scale + mid - GFX_CLUSTER_TILE_MARGIN,
+          hi = bounds.hi * scale + mid + GFX_CLUSTER_TILE_MARGIN;
     if (!(hi >= 0.0f) || !(lo < (float)count)) {
         return false;
     }
@@ -233,10 +232,16 @@ static bool tile_range(interval bounds, float half, uint32_t count, uint8_t *fir
     return true;
 }
 
+void gfx_cluster_slice_bounds(const gfx_cluster_grid *g, uint32_t k, float *lo, float *hi) {
+    float margin = GFX_CLUSTER_SLICE_MARGIN * (g->depth[k + 1] - g->depth[k]);
+    *lo = CORE_MAX(g->depth[k] - margin, 0.5f * g->near_plane);
+    *hi = g->depth[k + 1] + margin;
+}
+
 static bool slice_rect(const gfx_cluster_grid *g, const gfx_cluster_lights *l, uint32_t n,
                        uint32_t k, rect *out) {
-    float margin = slice_margin * (g->depth[k + 1] - g->depth[k]);
-    float a = CORE_MAX(g->depth[k] - margin, 0.5f * g->near_plane), b = g->depth[k + 1] + margin;
+    float a, b;
+    gfx_cluster_slice_bounds(g, k, &a, &b);
     float d = l->depth[n], r = l->radius[n];
     a = CORE_MAX(a, d - r);
     b = CORE_MIN(b, d + r);
@@ -263,8 +268,8 @@ static bool slice_range(const gfx_cluster_grid *g, float d, float r, uint32_t *f
         return false;
     }
     float from = CORE_MAX(d - r, g->near_plane), to = CORE_MIN(d + r, g->far);
-    *first = clamp_cell(slice_of(g, from) - slice_margin, g->slices);
-    *last = clamp_cell(slice_of(g, to) + slice_margin, g->slices);
+    *first = clamp_cell(slice_of(g, from) - GFX_CLUSTER_SLICE_MARGIN, g->slices);
+    *last = clamp_cell(slice_of(g, to) + GFX_CLUSTER_SLICE_MARGIN, g->slices);
     return true;
 }
 
@@ -286,7 +291,7 @@ static void per_light(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_clus
     rect *rects =
         room(&c->scratch, &c->scratch_bytes, (size_t)l->count * g->slices * sizeof *rects);
     uint32_t count = light_rects(g, l, rects);
-    reserve_offsets(c, cells);
+    gfx_clusters_reserve_offsets(c, cells);
     // Offsets are kept one cell ahead while writing, so that they end up in place.
     uint32_t *counts = c->offset + 1;
     for (int pass = 0; pass < 2; ++pass) {
@@ -305,7 +310,7 @@ static void per_light(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_clus
         }
         if (pass == 0) {
             sum_offsets(c, cells);
-            reserve_lights(c, c->offset[cells]);
+            gfx_clusters_reserve_lights(c, c->offset[cells]);
             memmove(counts, c->offset, cells * sizeof *counts);
             c->offset[0] = 0;
         }
@@ -315,10 +320,15 @@ static void per_light(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_clus
 void gfx_clusters_assign(gfx_clusters *c, const gfx_cluster_grid *grid,
                          const gfx_cluster_lights *lights, gfx_cluster_method method,
                          core_jobs *jobs) {
-    (void)jobs;
-    if (method == GFX_CLUSTER_NAIVE) {
+    switch (method) {
+    case GFX_CLUSTER_NAIVE:
         naive(c, grid, lights);
-    } else {
+        break;
+    case GFX_CLUSTER_PER_LIGHT:
         per_light(c, grid, lights);
+        break;
+    default:
+        gfx_clusters_assign_wide(c, grid, lights, jobs);
+        break;
     }
 }

@@ -43,6 +43,7 @@ uint32_t gfx_cluster_cell(const gfx_cluster_grid *grid, float u, float v, float 
 typedef struct gfx_cluster_lights {
     uint32_t count;
     float *x, *y, *depth, *radius;
+    void *block;     // private
     size_t capacity; // of each column, in lights; private
 } gfx_cluster_lights;
 // Makes room for `count` spheres. Contents are lost.
@@ -52,6 +53,7 @@ void gfx_cluster_lights_release(gfx_cluster_lights *lights);
 typedef enum gfx_cluster_method {
     GFX_CLUSTER_NAIVE,     // every cell's box against every light: the reference
     GFX_CLUSTER_PER_LIGHT, // exact bounds of each light in each slice, scalar
+    GFX_CLUSTER_SIMD,      // the same, refined by row, in vectors and threads
     GFX_CLUSTER_METHODS
 } gfx_cluster_method;
 const char *gfx_cluster_method_name(gfx_cluster_method method);
@@ -61,13 +63,29 @@ typedef struct gfx_clusters { // zero-initialise; keeps its memory between calls
     uint32_t *light;          // [total]
     uint32_t total;
     size_t offset_bytes, light_bytes;
-    void *scratch;
+    void *scratch; // per_light: rectangles
     size_t scratch_bytes;
+    void *wide; // simd: packed lights and records
 } gfx_clusters;
 
 void gfx_clusters_assign(gfx_clusters *c, const gfx_cluster_grid *grid,
                          const gfx_cluster_lights *lights, gfx_cluster_method method,
                          core_jobs *jobs);
 void gfx_clusters_release(gfx_clusters *c);
+
+// First 64-byte boundary in a block that was made CORE_ALIGN bytes too large.
+static inline void *gfx_cluster_align(void *block) {
+    return (void *)(((uintptr_t)block + CORE_ALIGN - 1) / CORE_ALIGN * CORE_ALIGN);
+}
+
+// For the methods: the results' storage, offsets zeroed; and a slice's bounds, widened for
+// rounding.
+void gfx_clusters_reserve_offsets(gfx_clusters *c, uint32_t cells);
+void gfx_clusters_reserve_lights(gfx_clusters *c, size_t total);
+void gfx_cluster_slice_bounds(const gfx_cluster_grid *g, uint32_t k, float *lo, float *hi);
+// The shader finds a fragment's cell from rounded coordinates; bounds are widened by these parts of
+// a column or row, and of a slice.
+#define GFX_CLUSTER_TILE_MARGIN  1e-3f
+#define GFX_CLUSTER_SLICE_MARGIN 2e-3f
 
 #endif

@@ -34,7 +34,7 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
     w->metrics = desc->metrics;
     w->settings = (gfx_settings){.grid = {16, 9, 24},
                                  .first_slice = 5.0f,
-                                 .assign = GFX_CLUSTER_PER_LIGHT,
+                                 .assign = GFX_CLUSTER_SIMD,
                                  .exposure = 1.0f,
                                  .instancing = 1,
                                  .culling = 1};

@@ -66,7 +66,7 @@ static void test_light_counts(void) {
 
 static void test_methods_slices_and_grids(void) {
     gfx_fixture f = open_scene(80, 45, 100, 4.0f);
-    const char *const methods[] = {"naive", "per_light"};
+    const char *const methods[] = {"naive", "per_light", "simd"};
     const char *const grids[] = {"16x9x24", "1x1x1", "7x5x3", "64x64x64"};
     for (size_t m = 0; m < CORE_COUNT_OF(methods); ++m) {
         for (size_t g = 0; g < CORE_COUNT_OF(grids); ++g) {

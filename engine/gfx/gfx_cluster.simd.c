@@ -1,0 +1,293 @@
+// Kernels of the wide cluster assignment. Bounds of a sphere in a slice: Mara, McGuire (2013), as
+// in gfx_cluster.c. Refinement by row: Persson, "Practical Clustered Shading" (2013): a sphere cut
+// by a plane beyond its centre lies in the sphere round the cut circle, so centre and radius shrink
+// onto the slice's plane, then onto the row's, before the columns are tested.
+#include "gfx/gfx_cluster_wide.h"
+
+#if CORE_SIMD_WIDTH > 4
+#include <immintrin.h>
+#endif
+
+#define NAME(name) CORE_SIMD_NAME(name)
+
+// Writes the lanes of a that m keeps to p, packed; may write CORE_SIMD_WIDTH elements. Returns how
+// many were kept.
+static inline uint32_t compress(uint32_t *p, vm m, vi a) {
+    uint32_t bits = vm_bits(m);
+#if CORE_SIMD_WIDTH == 16
+    _mm512_storeu_si512(p, _mm512_maskz_compress_epi32((__mmask16)bits, a));
+    return (uint32_t)__builtin_popcount(bits);
+#else
+    int32_t lane[CORE_SIMD_WIDTH];
+    uint32_t n = 0;
+    vi_storeu(lane, a);
+    for (int i = 0; i < CORE_SIMD_WIDTH; ++i) {
+        p[n] = (uint32_t)lane[i];
+        n += bits >> i & 1u;
+    }
+    return n;
+#endif
+}
+
+static inline void compress_float(float *p, vm m, vf a) {
+    compress((uint32_t *)(void *)p, m, vi_bits(a));
+}
+
+// Tangents from the eye to the disk of radius r round (s, d): slope and depth of the point of touch
+// on the side of lesser (sign -1) or greater s.
+static inline void tangent(vf s, vf d, vf r, float sign, vf *slope, vf *at) {
+    vf q = vf_mad(s, s, vf_mul(d, d));
+    vf l = vf_sqrt(vf_max(vf_sub(q, vf_mul(r, r)), vf_zero()));
+    vf rs = vf_mul(r, vf_set1(sign));
+    vf run = vf_sub(vf_mul(d, l), vf_mul(s, rs));
+    *slope = vf_div(vf_mad(d, rs, vf_mul(s, l)), run);
+    *at = vf_div(vf_mul(l, run), q);
+    vm none = vm_or(vf_le(l, vf_zero()), vf_le(run, vf_zero()));
+    *slope = vf_select(none, vf_zero(), *slope);
+    *at = vf_select(none, vf_set1(-1.0f), *at);
+}
+
+// Distance to the left-, right-, lower- and uppermost plane decides whether a light is in view.
+static inline vm outside(const gfx_cluster_planes *p, uint32_t last, vf s, vf d, vf r) {
+    vf lo = vf_mad(vf_set1(p->ns[0]), s, vf_mad(vf_set1(p->nd[0]), d, vf_set1(p->nc[0])));
+    vf hi = vf_mad(vf_set1(p->ns[last]), s, vf_mad(vf_set1(p->nd[last]), d, vf_set1(p->nc[last])));
+    return vm_or(vf_lt(lo, vf_neg(r)), vf_gt(hi, r));
+}
+
+uint32_t NAME(gfx_cluster_pack)(const gfx_cluster_wide *w, const gfx_cluster_lights *l) {
+    const gfx_cluster_grid *g = w->grid;
+    const gfx_cluster_packed *p = &w->packed;
+    vf first = vf_set1(w->slice_lo[0]), last = vf_set1(w->slice_hi[g->slices - 1]);
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < l->count; i += CORE_SIMD_WIDTH) {
+        vf x = vf_load(l->x + i), y = vf_load(l->y + i), d = vf_load(l->depth + i);
+        vf r = vf_load(l->radius + i), lo = vf_sub(d, r), hi = vf_add(d, r);
+        vm keep = vm_and(vf_ge(hi, first), vf_le(lo, last));
+        keep = vm_andnot(keep, outside(&w->column, g->columns, x, d, r));
+        keep = vm_andnot(keep, outside(&w->row, g->rows, y, d, r));
+        keep = vm_and(keep, vm_first((int)(l->count - i)));
+        if (!vm_any(keep)) {
+            continue;
+        }
+        vf one = vf_set1(1.0f), slope[4], at[4];
+        for (int k = 0; k < 4; ++k) {
+            tangent(k < 2 ? x : y, d, r, k & 1 ? 1.0f : -1.0f, &slope[k], &at[k]);
+            compress_float(p->slope[k] + n, keep, slope[k]);
+            compress_float(p->at[k] + n, keep, at[k]);
+        }
+        vf inv_lo = vf_select(vf_gt(lo, vf_zero()), vf_div(one, lo), vf_set1(1e30f));
+        compress_float(p->x + n, keep, x);
+        compress_float(p->y + n, keep, y);
+        compress_float(p->depth + n, keep, d);
+        compress_float(p->radius + n, keep, r);
+        compress_float(p->lo + n, keep, lo);
+        compress_float(p->hi + n, keep, hi);
+        compress_float(p->inv_lo + n, keep, inv_lo);
+        compress_float(p->inv_hi + n, keep, vf_div(one, hi));
+        n += compress(p->id + n, keep, vi_add(vi_set1((int32_t)i), vi_iota()));
+    }
+    for (uint32_t i = n; i < n + CORE_LANES; ++i) { // lanes beyond the end are in no slice
+        p->lo[i] = 1e30f, p->hi[i] = -1e30f;
+    }
+    return n;
+}
+
+// ---- one slice ----
+
+typedef struct slab { // of one slice, for a vector of lights
+    vf a, b;          // depths of the part of the sphere in it
+    vf inv_a, inv_b;
+    vf half_a, half_b; // half chords at a and b
+} slab;
+
+static inline slab slab_of(const gfx_cluster_packed *p, uint32_t i, float lo, float hi,
+                           float inv_lo, float inv_hi) {
+    vf d = vf_load(p->depth + i), r = vf_load(p->radius + i), r2 = vf_mul(r, r);
+    slab s = {.a = vf_max(vf_set1(lo), vf_load(p->lo + i)),
+              .b = vf_min(vf_set1(hi), vf_load(p->hi + i)),
+              .inv_a = vf_min(vf_set1(inv_lo), vf_load(p->inv_lo + i)),
+              .inv_b = vf_max(vf_set1(inv_hi), vf_load(p->inv_hi + i))};
+    vf da = vf_sub(s.a, d), db = vf_sub(s.b, d);
+    s.half_a = vf_sqrt(vf_max(vf_sub(r2, vf_mul(da, da)), vf_zero()));
+    s.half_b = vf_sqrt(vf_max(vf_sub(r2, vf_mul(db, db)), vf_zero()));
+    return s;
+}
+
+// Least and greatest s/depth of the sphere's part in the slab.
+static inline void slopes(const gfx_cluster_packed *p, uint32_t i, int side, const slab *s, vf c,
+                          vf *lo, vf *hi) {
+    vf lo_a = vf_mul(vf_sub(c, s->half_a), s->inv_a), lo_b = vf_mul(vf_sub(c, s->half_b), s->inv_b);
+    vf hi_a = vf_mul(vf_add(c, s->half_a), s->inv_a), hi_b = vf_mul(vf_add(c, s->half_b), s->inv_b);
+    *lo = vf_min(lo_a, lo_b);
+    *hi = vf_max(hi_a, hi_b);
+    for (int k = 0; k < 2; ++k) {
+        vf at = vf_load(p->at[side + k] + i), slope = vf_load(p->slope[side + k] + i);
+        vm inside = vm_and(vf_gt(at, s->a), vf_lt(at, s->b));
+        vf *bound = k ? hi : lo;
+        vf wider = k ? vf_max(*bound, slope) : vf_min(*bound, slope);
+        *bound = vf_select(inside, wider, *bound);
+    }
+}
+
+// The same without perspective.
+static inline void spans(vf c, vf d, vf r, const slab *s, vf *lo, vf *hi) {
+    vf off = vf_sub(vf_max(s->a, vf_min(d, s->b)), d);
+    vf half = vf_sqrt(vf_max(vf_sub(vf_mul(r, r), vf_mul(off, off)), vf_zero()));
+    *lo = vf_sub(c, half);
+    *hi = vf_add(c, half);
+}
+
+typedef struct tiles {
+    vi first, last;
+    vm any;
+} tiles;
+
+static inline tiles tiles_of(vf lo, vf hi, float scale, float mid, float margin, uint32_t count) {
+    vf end = vf_set1((float)count), most = vf_set1((float)(count - 1));
+    vf from = vf_mad(lo, vf_set1(scale), vf_set1(mid - margin));
+    vf to = vf_mad(hi, vf_set1(scale), vf_set1(mid + margin));
+    tiles t = {.any = vm_and(vf_ge(to, vf_zero()), vf_lt(from, end))};
+    t.first = vi_trunc(vf_min(vf_max(from, vf_zero()), most));
+    t.last = vi_trunc(vf_min(vf_max(to, vf_zero()), most));
+    return t;
+}
+
+typedef struct rows { // centre and radius shrunk onto each row, for one light in one slice
+    float depth[GFX_CLUSTER_SIDE + CORE_LANES], radius[GFX_CLUSTER_SIDE + CORE_LANES];
+} rows;
+
+// Radius -1 where the row is not touched.
+static inline void refine_rows(const gfx_cluster_wide *w, float y, float d, float r2,
+                               uint32_t first, uint32_t last, rows *out) {
+    const gfx_cluster_planes *p = &w->row;
+    for (uint32_t j = first; j <= last; j += CORE_SIMD_WIDTH) {
+        vf ys = vf_set1(y), ds = vf_set1(d);
+        vf below =
+            vf_mad(vf_loadu(p->ns + j), ys, vf_mad(vf_loadu(p->nd + j), ds, vf_loadu(p->nc + j)));
+        vf above = vf_mad(vf_loadu(p->ns + j + 1), ys,
+                          vf_mad(vf_loadu(p->nd + j + 1), ds, vf_loadu(p->nc + j + 1)));
+        // Negative distance to the lower plane or positive to the upper one: outside.
+        vf off_low = vf_min(below, vf_zero()), off_high = vf_max(above, vf_zero());
+        vf depth = vf_sub(vf_sub(ds, vf_mul(vf_loadu(p->nd + j), off_low)),
+                          vf_mul(vf_loadu(p->nd + j + 1), off_high));
+        vf left = vf_sub(vf_sub(vf_set1(r2), vf_mul(off_low, off_low)), vf_mul(off_high, off_high));
+        vf radius =
+            vf_select(vf_ge(left, vf_zero()), vf_sqrt(vf_max(left, vf_zero())), vf_set1(-1.0f));
+        vf_storeu(out->depth + j, depth);
+        vf_storeu(out->radius + j, radius);
+    }
+}
+
+// Columns of a group of 16 that the sphere (x, d, r) touches.
+static inline uint32_t column_mask(const gfx_cluster_planes *p, uint32_t first, float x, float d,
+                                   float r) {
+    vf xs = vf_set1(x), ds = vf_set1(d), rs = vf_set1(r), minus = vf_set1(-r);
+    uint32_t mask = 0;
+    for (uint32_t i = 0; i < 16; i += CORE_SIMD_WIDTH) {
+        uint32_t k = first + i;
+        vf left =
+            vf_mad(vf_loadu(p->ns + k), xs, vf_mad(vf_loadu(p->nd + k), ds, vf_loadu(p->nc + k)));
+        vf right = vf_mad(vf_loadu(p->ns + k + 1), xs,
+                          vf_mad(vf_loadu(p->nd + k + 1), ds, vf_loadu(p->nc + k + 1)));
+        mask |= vm_bits(vm_and(vf_ge(left, minus), vf_le(right, rs))) << i;
+    }
+    return mask;
+}
+
+typedef struct reach { // tiles of one light in one slice, inclusive
+    uint32_t c0, c1, r0, r1;
+} reach;
+
+static inline uint32_t record_light(const gfx_cluster_wide *w, uint32_t i, float lo, float hi,
+                                    const reach *t, gfx_cluster_records *out) {
+    const gfx_cluster_packed *p = &w->packed;
+    uint32_t groups = (w->grid->columns + 15) / 16, pairs = 0;
+    float x = p->x[i], d = p->depth[i], r = p->radius[i];
+    float inside = CORE_CLAMP(d, lo, hi), off = inside - d; // onto the slice's nearer plane
+    rows row;
+    refine_rows(w, p->y[i], inside, r * r - off * off, t->r0, t->r1, &row);
+    for (uint32_t j = t->r0; j <= t->r1; ++j) {
+        if (row.radius[j] < 0.0f) {
+            continue;
+        }
+        for (uint32_t g = t->c0 / 16; g <= t->c1 / 16; ++g) {
+            uint32_t from = t->c0 > 16 * g ? t->c0 - 16 * g : 0;
+            uint32_t to = t->c1 < 16 * g + 15 ? t->c1 - 16 * g : 15;
+            uint32_t mask = column_mask(&w->column, 16 * g, x, row.depth[j], row.radius[j]);
+            mask &= (2u << to) - (1u << from);
+            uint32_t list = j * groups + g, n = out->count[list];
+            out->id[list * out->stride + n] = p->id[i];
+            out->mask[list * out->stride + n] = (uint16_t)mask;
+            out->count[list] = n + (mask != 0);
+            pairs += (uint32_t)__builtin_popcount(mask);
+        }
+    }
+    return pairs;
+}
+
+uint32_t NAME(gfx_cluster_record)(const gfx_cluster_wide *w, uint32_t k, gfx_cluster_records *out) {
+    const gfx_cluster_grid *g = w->grid;
+    const gfx_cluster_packed *p = &w->packed;
+    float lo = w->slice_lo[k], hi = w->slice_hi[k], inv_lo = 1.0f / lo, inv_hi = 1.0f / hi;
+    uint32_t pairs = 0;
+    for (uint32_t i = 0; i < p->count; i += CORE_SIMD_WIDTH) {
+        vm in =
+            vm_and(vf_le(vf_load(p->lo + i), vf_set1(hi)), vf_ge(vf_load(p->hi + i), vf_set1(lo)));
+        if (!vm_any(in)) {
+            continue;
+        }
+        vf x = vf_load(p->x + i), y = vf_load(p->y + i), x0, x1, y0, y1;
+        slab s = slab_of(p, i, lo, hi, inv_lo, inv_hi);
+        if (g->orthographic) {
+            vf d = vf_load(p->depth + i), r = vf_load(p->radius + i);
+            spans(x, d, r, &s, &x0, &x1);
+            spans(y, d, r, &s, &y0, &y1);
+        } else {
+            slopes(p, i, 0, &s, x, &x0, &x1);
+            slopes(p, i, 2, &s, y, &y0, &y1);
+        }
+        tiles c = tiles_of(x0, x1, w->scale_x, w->mid_x, w->margin, g->columns);
+        tiles r = tiles_of(y0, y1, w->scale_y, w->mid_y, w->margin, g->rows);
+        uint32_t bits = vm_bits(vm_and(in, vm_and(c.any, r.any)));
+        int32_t c0[CORE_SIMD_WIDTH], c1[CORE_SIMD_WIDTH], r0[CORE_SIMD_WIDTH], r1[CORE_SIMD_WIDTH];
+        vi_storeu(c0, c.first);
+        vi_storeu(c1, c.last);
+        vi_storeu(r0, r.first);
+        vi_storeu(r1, r.last);
+        for (; bits; bits &= bits - 1) {
+            int lane = __builtin_ctz(bits);
+            reach t = {(uint32_t)c0[lane], (uint32_t)c1[lane], (uint32_t)r0[lane],
+                       (uint32_t)r1[lane]};
+            pairs += record_light(w, i + (uint32_t)lane, lo, hi, &t, out);
+        }
+    }
+    return pairs;
+}
+
+void NAME(gfx_cluster_compact)(const gfx_cluster_wide *w, const gfx_cluster_records *r,
+                               gfx_cluster_slice *out) {
+    const gfx_cluster_grid *g = w->grid;
+    uint32_t groups = (g->columns + 15) / 16, at = 0;
+    for (uint32_t cell = 0; cell < g->rows * g->columns; ++cell) {
+        uint32_t row = cell / g->columns, column = cell % g->columns;
+        uint32_t list = row * groups + column / 16, n = r->count[list];
+        const uint32_t *id = r->id + list * r->stride;
+        const uint16_t *mask = r->mask + list * r->stride;
+        uint32_t bit = column % 16;
+#if CORE_SIMD_WIDTH == 16
+        for (uint32_t i = 0; i < n; i += 16) {
+            __m256i m = _mm256_load_si256((const void *)(mask + i));
+            __mmask16 keep = _mm256_test_epi16_mask(m, _mm256_set1_epi16((short)(1 << bit)));
+            keep &= vm_first((int)(n - i)).v;
+            at += compress(out->light + at, (vm){keep}, vi_load((const int32_t *)id + i));
+        }
+#else
+        for (uint32_t i = 0; i < n; ++i) {
+            out->light[at] = id[i];
+            at += mask[i] >> bit & 1u;
+        }
+#endif
+        out->end[cell] = at;
+    }
+    out->total = at;
+}
