@@ -1,6 +1,8 @@
 #include "app/lab_kernels.h"
 
+#include "gfx/gfx_lab.h"
 #include "phys/lab.h"
 
-const core_lab_kernel *const app_lab_kernels[] = {&core_lab_math, &core_lab_layout,
-                                                  &phys_lab_motion, NULL};
+const core_lab_kernel *const app_lab_kernels[] = {
+    &core_lab_math, &core_lab_layout, &phys_lab_motion, &gfx_lab_cluster, &gfx_lab_frame, NULL,
+};

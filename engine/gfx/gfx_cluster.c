@@ -113,6 +113,15 @@ void gfx_clusters_reserve_lights(gfx_clusters *c, size_t total) {
     c->total = (uint32_t)total;
 }
 
+// Room for `more` behind the lists so far, which are kept.
+static void extend_lights(gfx_clusters *c, size_t more) {
+    size_t used = c->total * sizeof *c->light, need = used + more * sizeof *c->light;
+    if (need > c->light_bytes) {
+        c->light = core_realloc(c->light, c->light_bytes, 2 * need);
+        c->light_bytes = 2 * need;
+    }
+}
+
 // Turns counts in offset[cell + 1] into offsets.
 static void sum_offsets(gfx_clusters *c, uint32_t cells) {
     for (uint32_t i = 0; i < cells; ++i) {
@@ -137,42 +146,36 @@ static box cell_box(const gfx_cluster_grid *g, uint32_t i, uint32_t j, uint32_t 
     };
 }
 
-static bool box_touches(const box *b, float x, float y, float z, float r) {
-    const float p[3] = {x, y, z};
-    float d2 = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        float below = b->lo[i] - p[i], above = p[i] - b->hi[i];
-        float d = CORE_MAX(below, above);
-        d = CORE_MAX(d, 0.0f);
-        d2 += d * d;
+static inline float outside(float lo, float hi, float p) {
+    float below = lo - p, above = p - hi;
+    float d = below > above ? below : above;
+    return d > 0.0f ? d : 0.0f;
+}
+
+// Appends the lights that touch a box; out has room for all.
+static uint32_t box_lights(const box *b, const gfx_cluster_lights *l, uint32_t *out) {
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < l->count; ++i) {
+        float dx = outside(b->lo[0], b->hi[0], l->x[i]), dy = outside(b->lo[1], b->hi[1], l->y[i]);
+        float dz = outside(b->lo[2], b->hi[2], l->depth[i]), r = l->radius[i];
+        out[n] = i;
+        n += dx * dx + dy * dy + dz * dz <= r * r;
     }
-    return d2 <= r * r;
+    return n;
 }
 
 static void naive(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_cluster_lights *l) {
     uint32_t cells = gfx_cluster_cells(g), cell = 0;
     gfx_clusters_reserve_offsets(c, cells);
-    for (int pass = 0; pass < 2; ++pass) { // count, then write
-        cell = 0;
-        for (uint32_t k = 0; k < g->slices; ++k) {
-            for (uint32_t j = 0; j < g->rows; ++j) {
-                for (uint32_t i = 0; i < g->columns; ++i, ++cell) {
-                    box b = cell_box(g, i, j, k);
-                    uint32_t at = c->offset[cell];
-                    for (uint32_t n = 0; n < l->count; ++n) {
-                        if (box_touches(&b, l->x[n], l->y[n], l->depth[n], l->radius[n])) {
-                            if (pass) {
-                                c->light[at] = n;
-                            }
-                            at++;
-                        }
-                    }
-                    c->offset[cell + 1] = at;
-                }
+    c->total = 0;
+    for (uint32_t k = 0; k < g->slices; ++k) {
+        for (uint32_t j = 0; j < g->rows; ++j) {
+            for (uint32_t i = 0; i < g->columns; ++i, ++cell) {
+                box b = cell_box(g, i, j, k);
+                extend_lights(c, l->count);
+                c->total += box_lights(&b, l, c->light + c->total);
+                c->offset[cell + 1] = c->total;
             }
-        }
-        if (pass == 0) {
-            gfx_clusters_reserve_lights(c, c->offset[cells]);
         }
     }
 }

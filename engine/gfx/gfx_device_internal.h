@@ -103,7 +103,7 @@ struct gfx_device {
     bool float_target, software, draw_parameters;
     char name[128];
     uint32_t gl_errors;
-    uint32_t passes; // of the last frame
+    uint32_t passes;        // of the last frame
     uint32_t width, height; // of the targets
     GLuint hdr_texture, depth_texture, hdr_target, ldr_texture, ldr_target;
     GLuint empty_vao;

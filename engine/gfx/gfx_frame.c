@@ -89,6 +89,16 @@ static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(d->hdr_target, GL_COLOR, 0, clear);
     glClearNamedFramebufferfv(d->hdr_target, GL_DEPTH, 0, &depth);
+    if (world->settings.prepass) {
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        bool ok = gfx_draw_list_submit(d, world, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthFunc(GL_EQUAL);
+        glDepthMask(GL_FALSE);
+        if (!ok) {
+            return false;
+        }
+    }
     return gfx_draw_list_submit(d, world, "scene.frag", clustered ? GFX_FEATURE_CLUSTERED : 0);
 }
 

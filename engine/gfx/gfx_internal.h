@@ -104,8 +104,8 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     int linear_slices, assign; // assign: gfx_cluster_method
     float first_slice;         // m
     float exposure;
-    int tonemap;             // GFX_TONEMAP_*
-    int instancing, culling; // switches
+    int tonemap;                      // GFX_TONEMAP_*
+    int instancing, culling, prepass; // switches
 } gfx_settings;
 
 typedef struct gfx_frame_stats {

@@ -84,6 +84,7 @@ static const setting table[] = {
     {"exposure", offsetof(gfx_settings, exposure), {NULL}, 1e-6f, 1e6f},
     {"tonemap", offsetof(gfx_settings, tonemap), {"neutral", "linear"}, 0, 0},
     {"instancing", offsetof(gfx_settings, instancing), {"off", "on"}, 0, 0},
+    {"prepass", offsetof(gfx_settings, prepass), {"off", "on"}, 0, 0},
     {"culling", offsetof(gfx_settings, culling), {"off", "on"}, 0, 0},
 };
 

@@ -37,7 +37,8 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
                                  .assign = GFX_CLUSTER_SIMD,
                                  .exposure = 1.0f,
                                  .instancing = 1,
-                                 .culling = 1};
+                                 .culling = 1,
+                                 .prepass = 1};
     const float ambient[3] = {0.32f, 0.36f, 0.42f}, background[3] = {0.11f, 0.14f, 0.18f};
     memcpy(w->ambient, ambient, sizeof ambient);
     memcpy(w->background, background, sizeof background);

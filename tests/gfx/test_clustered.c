@@ -136,7 +136,8 @@ static void test_counts(void) {
     TEST_ASSERT_EQUAL_DOUBLE(51.0, core_metrics_get(m, CORE_COUNT_LIGHTS));
     TEST_ASSERT_EQUAL_DOUBLE(16.0 * 9 * 24, core_metrics_get(m, CORE_COUNT_CLUSTERS));
     TEST_ASSERT_GREATER_THAN(100, (int)core_metrics_get(m, CORE_COUNT_LIGHT_REFS));
-    TEST_ASSERT_EQUAL_DOUBLE(2.0, core_metrics_get(m, CORE_COUNT_DRAWS)); // boxes, spheres
+    TEST_ASSERT_EQUAL_DOUBLE(4.0,
+                             core_metrics_get(m, CORE_COUNT_DRAWS)); // boxes and spheres, twice
     TEST_ASSERT_GREATER_THAN(12, (int)core_metrics_get(m, CORE_COUNT_TRIANGLES));
     set(&f, "render", "forward");
     TEST_ASSERT_TRUE(gfx_device_render(f.device, f.world));

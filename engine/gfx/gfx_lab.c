@@ -1,0 +1,168 @@
+// Lab kernels: light assignment alone, and whole frames, on the report's test: lights of equal
+// radius in a box of 100 x 10 x 100 m, the camera at one edge, 60 degrees, 16:9.
+#include "gfx/gfx_lab.h"
+
+#include "core/clock.h"
+#include "core/rng.h"
+#include "gfx/gfx_cluster.h"
+#include "gfx/gfx_device_internal.h"
+
+#include <string.h>
+
+static const core_vec3 eye = {0.0f, 3.0f, 50.0f};
+
+static core_vec3 light_position(core_rng *rng) {
+    float x = core_rng_float(rng), y = core_rng_float(rng), z = core_rng_float(rng);
+    return core_v3(100.0f * x - 50.0f, 10.0f * y, 100.0f * z - 50.0f);
+}
+
+static void add_lights(gfx_world *world, uint32_t n, float radius) {
+    core_rng rng = core_rng_make(1, CORE_RNG_ENGINE);
+    for (uint32_t i = 0; i < n; ++i) {
+        gfx_light_desc d = gfx_light_desc_default(GFX_POINT);
+        d.position = light_position(&rng);
+        d.radius = radius;
+        d.intensity = 4.0f;
+        for (int k = 0; k < 3; ++k) {
+            d.color[k] = 0.2f + 0.8f * core_rng_float(&rng);
+        }
+        gfx_light_create(world, &d);
+    }
+}
+
+static gfx_world *lab_world(const core_lab_case *c) {
+    gfx_world_desc desc = gfx_world_desc_default();
+    gfx_world *world = gfx_world_create(&desc);
+    if (!world) {
+        return NULL;
+    }
+    add_lights(world, (uint32_t)core_lab_number(c, "n", 1024),
+               (float)core_lab_number(c, "radius", 5));
+    gfx_camera camera = {.position = eye};
+    gfx_world_set_camera(world, &camera);
+    return world;
+}
+
+static double wall_ns(core_lab_body *body, void *ctx, int runs) {
+    double best = 0;
+    for (int i = 0; i < runs; ++i) {
+        uint64_t start = core_clock_ns();
+        body(ctx);
+        double ns = (double)(core_clock_ns() - start);
+        best = i == 0 || ns < best ? ns : best;
+    }
+    return best;
+}
+
+// ---- assignment ----
+
+typedef struct cluster_run {
+    gfx_clusters clusters;
+    gfx_cluster_grid grid;
+    gfx_cluster_lights lights;
+    gfx_cluster_method method;
+    core_jobs *jobs;
+} cluster_run;
+
+static void assign(void *ctx) {
+    cluster_run *r = ctx;
+    gfx_clusters_assign(&r->clusters, &r->grid, &r->lights, r->method, r->jobs);
+}
+
+static bool run_cluster(const core_lab_case *c, core_json *out) {
+    const char *name = core_lab_text(c, "method", "simd");
+    cluster_run r = {.method = GFX_CLUSTER_METHODS};
+    for (int m = 0; m < GFX_CLUSTER_METHODS; ++m) {
+        if (strcmp(name, gfx_cluster_method_name((gfx_cluster_method)m)) == 0) {
+            r.method = (gfx_cluster_method)m;
+        }
+    }
+    if (r.method == GFX_CLUSTER_METHODS) {
+        return core_fail("lab kernel gfx.cluster: method naive, per_light or simd expected");
+    }
+    gfx_world *world = lab_world(c);
+    r.jobs = core_jobs_create((int)core_lab_number(c, "threads", 1));
+    if (!world || !r.jobs) {
+        return false;
+    }
+    gfx_view view;
+    gfx_camera camera = gfx_world_camera(world);
+    gfx_view_make(&camera, 16.0f / 9.0f, &view);
+    gfx_cluster_grid_make(&r.grid, world->settings.grid, false, world->settings.first_slice, false,
+                          view.tan_x, view.tan_y, view.near_plane, view.virtual_far);
+    gfx_cluster_lights_fill(&r.lights, &world->lights, &view);
+    assign(&r);
+    core_json_int(out, "refs", r.clusters.total);
+    if (core_lab_number(c, "timed", 0) > 0) {
+        core_json_number(out, "cost_ns", core_lab_time(assign, &r, 5e7));
+        core_json_number(out, "wall_ns", wall_ns(assign, &r, 15));
+    }
+    gfx_clusters_release(&r.clusters);
+    gfx_cluster_lights_release(&r.lights);
+    core_jobs_destroy(r.jobs);
+    gfx_world_destroy(world);
+    return true;
+}
+
+const core_lab_kernel gfx_lab_cluster = {
+    "gfx.cluster", "light assignment: list entries, CPU and wall time of one assignment",
+    "method: naive|per_light|simd; n, radius, threads, timed", run_cluster};
+
+// ---- whole frames ----
+
+typedef struct frame_run {
+    gfx_device *device;
+    gfx_world *world;
+    bool ok;
+} frame_run;
+
+static void add_boxes(gfx_world *world) {
+    core_rng rng = core_rng_make(2, CORE_RNG_ENGINE);
+    gfx_instance_desc desc = {.mesh = gfx_mesh_builtin(world, "box")};
+    for (int i = 0; i <= 400; ++i) {
+        gfx_instance box = gfx_instance_create(world, &desc);
+        core_vec3 p = light_position(&rng);
+        float side = 0.5f + 2.5f * core_rng_float(&rng);
+        core_vec3 size = i ? core_v3(side, 2.0f * side, side) : core_v3(100.0f, 1.0f, 100.0f);
+        p = i ? core_v3(p.x, side, p.z) : core_v3(0.0f, -0.5f, 0.0f);
+        gfx_instance_set_transform(world, box, p, core_quat_identity(), size);
+    }
+}
+
+// Timer queries of software renderers are wrong by factors, so the clock runs round glFinish.
+static void draw(void *ctx) {
+    frame_run *r = ctx;
+    r->ok = gfx_device_render(r->device, r->world) && r->ok;
+    glFinish();
+}
+
+static bool run_frame(const core_lab_case *c, core_json *out) {
+    core_vfs *vfs = core_vfs_create();
+    gfx_device_desc desc = gfx_device_desc_default();
+    desc.width = (uint32_t)core_lab_number(c, "width", 640);
+    desc.height = (uint32_t)core_lab_number(c, "height", 360);
+    desc.vfs = vfs;
+    frame_run r = {.ok = core_vfs_mount(vfs, core_lab_text(c, "assets", "assets"), "", false)};
+    r.device = r.ok ? gfx_device_create(&desc) : NULL;
+    r.world = r.device ? lab_world(c) : NULL;
+    if (r.world && gfx_world_set(r.world, "render", core_lab_text(c, "method", "clustered"))) {
+        add_boxes(r.world);
+        draw(&r); // compiles
+        if (r.ok && core_lab_number(c, "timed", 0) > 0) {
+            int runs = (int)core_lab_number(c, "runs", 5);
+            core_json_number(out, "wall_ns", wall_ns(draw, &r, runs));
+        }
+        core_json_string(out, "device", gfx_device_name(r.device));
+        core_json_int(out, "light_refs", r.world->stats.light_refs);
+    } else {
+        r.ok = false;
+    }
+    gfx_world_destroy(r.world);
+    gfx_device_destroy(r.device);
+    core_vfs_destroy(vfs);
+    return r.ok;
+}
+
+const core_lab_kernel gfx_lab_frame = {
+    "gfx.frame", "wall time of one frame, plain forward or clustered",
+    "method: forward|clustered; n, radius, width, height, runs, assets, timed", run_frame};

@@ -1,0 +1,9 @@
+// Kernels that rendering offers to the lab.
+#ifndef GFX_LAB_H
+#define GFX_LAB_H
+
+#include "core/lab.h"
+
+extern const core_lab_kernel gfx_lab_cluster, gfx_lab_frame;
+
+#endif
