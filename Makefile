@@ -95,8 +95,12 @@ fmt: ## lay out the C sources
 	@tools/setup.sh lint
 	@git ls-files -co --exclude-standard '*.c' '*.h' | xargs -r clang-format -i
 
+docs: $(OUT)/corsac-apidoc ## docs/api.md and the editor stubs, from the tables of bindings
+	@$(OUT)/corsac-apidoc markdown >docs/api.md
+	@$(OUT)/corsac-apidoc stubs >scripts/types/corsac.lua
+
 ##@ Keep
-.PHONY: install clean distclean
+.PHONY: docs install clean distclean
 SHARE := $(DESTDIR)$(PREFIX)/share/corsac
 install: all ## program, library, headers, scripts and a pkg-config file below $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(SHARE)

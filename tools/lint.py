@@ -86,8 +86,10 @@ def check_shell():
 
 
 def check_length():
-    """No source file is longer than 1,000 lines."""
+    """No source file is longer than 1,000 lines (the editor stubs are generated)."""
     for path in tracked("*.c", "*.h", "*.lua", "*.py", "*.sh", "*.glsl", "*.vert", "*.frag", "*.comp"):
+        if shown(path).startswith("scripts/types/"):
+            continue
         count = len(path.read_text(encoding="utf-8").splitlines())
         if count > 1000:
             yield f"{shown(path)}: {count} lines; at most 1000"

@@ -8,3 +8,7 @@ LIB_OBJ += $(OBJ)/gen/corsac_lua.o
 $(GEN)/corsac_lua.c: $(EMBED_LUA) engine/script/embed.sh
 	@mkdir -p $(@D); sh engine/script/embed.sh $(EMBED_LUA) >$@.new; mv $@.new $@
 $(OBJ)/gen/corsac_lua.o: $(GEN)/corsac_lua.c
+
+# The program that writes docs/api.md and the editor stubs.
+$(OUT)/corsac-apidoc: $(OBJ)/tools/apidoc/apidoc.o $(OUT)/libcorsac.a $(OBJ)/link
+	$(LINK) $(WRAP_FLAGS) -o $@ $(OBJ)/tools/apidoc/apidoc.o $(OUT)/libcorsac.a $(LIBS)

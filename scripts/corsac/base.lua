@@ -2,7 +2,7 @@
 -- machine, with the compiler on or off. `engine` holds the C half (state.c).
 local engine = ...
 
-local rawget, rawset, rawtype, select = rawget, rawset, type, select
+local rawget, rawtype, select = rawget, type, select
 local rawtostring, rawformat = tostring, string.format
 local rawsetmetatable, rawgetmetatable = setmetatable, debug.getmetatable
 local keysOf, find, gsub = engine.keys, string.find, string.gsub
@@ -104,19 +104,22 @@ function math.random(a, b)
     local low, high = 1, a
     if b ~= nil then low, high = a, b end
     if rawtype(low) ~= "number" or rawtype(high) ~= "number" then
-        err(2, "math.random: expected numbers, got %s", engine.describe(rawtype(low) ~= "number" and low or high))
+        local wrong = rawtype(low) ~= "number" and low or high
+        err(2, "math.random: expected numbers, got %s", engine.describe(wrong))
     end
     low, high = floor(low), floor(high)
-    if not (low <= high) then err(2, "math.random: the interval %d..%d is empty", low, high) end
+    if low > high then err(2, "math.random: the interval %d..%d is empty", low, high) end
     return low + floor(u * (high - low + 1))
 end
 
 function math.randomseed(n)
-    if rawtype(n) ~= "number" then err(2, "math.randomseed: expected a number, got %s", engine.describe(n)) end
+    if rawtype(n) ~= "number" then
+        err(2, "math.randomseed: expected a number, got %s", engine.describe(n))
+    end
     reseed(n)
 end
 
--- Clock, collector, metatables ---------------------------------------------------------------------
+-- Clock, collector, metatables -------------------------------------------------------------------
 
 local clock = { time = os.time, clock = os.clock, date = os.date }
 local simulating = engine.simulating
@@ -124,7 +127,8 @@ os = {}
 for _, name in ipairs { "time", "clock", "date" } do
     os[name] = function(...)
         if simulating() then
-            err(2, "os.%s reads the wall clock, which would make every run different; the simulation's own time is corsac.getTime()", name)
+            err(2, "os.%s reads the wall clock, which would make every run different; "
+                .. "the simulation's own time is corsac.getTime()", name)
         end
         return clock[name](...)
     end
@@ -133,7 +137,8 @@ end
 local collect = collectgarbage
 function collectgarbage(what, n)
     if what == "count" and simulating() then
-        err(2, 'collectgarbage("count") differs from run to run; call it from corsac.update or read the metric counts.lua_kb')
+        err(2, 'collectgarbage("count") differs from run to run; call it from corsac.update '
+            .. "or read the metric counts.lua_kb")
     end
     local result = collect(what or "collect", n)
     return what == "count" and result or 0
@@ -141,12 +146,13 @@ end
 
 function setmetatable(t, meta)
     if rawtype(meta) == "table" and (rawget(meta, "__mode") or rawget(meta, "__gc")) then
-        err(2, "setmetatable: __mode and __gc depend on when the collector runs, which differs from run to run; remove entries yourself")
+        err(2, "setmetatable: __mode and __gc depend on when the collector runs, which differs "
+            .. "from run to run; remove entries yourself")
     end
     return rawsetmetatable(t, meta)
 end
 
--- Code from text and files -------------------------------------------------------------------------
+-- Code from text and files -----------------------------------------------------------------------
 
 local rawload = load
 function load(text, name, _, env)
@@ -158,21 +164,26 @@ end
 loadstring = load
 
 local builtin = {
-    bit = bit, jit = jit, string = string, table = table, math = math, coroutine = coroutine, os = os,
+    bit = bit, jit = jit, string = string, table = table, math = math,
+    coroutine = coroutine, os = os,
 }
-local builtinLoaders = { ffi = true, ["table.new"] = true, ["table.clear"] = true, ["string.buffer"] = true }
+local builtinLoaders = {
+    ffi = true, ["table.new"] = true, ["table.clear"] = true, ["string.buffer"] = true,
+}
 local rawrequire = require
 local loaded = {}
 engine.loaded = loaded
 
 -- "a.b" is a/b.lua or a/b/init.lua in the game's folder; what it returns is kept.
 function require(name)
-    if rawtype(name) ~= "string" then err(2, "require: expected a name, got %s", engine.describe(name)) end
+    if rawtype(name) ~= "string" then
+        err(2, "require: expected a name, got %s", engine.describe(name))
+    end
     if builtin[name] then return builtin[name] end
     if builtinLoaders[name] then return rawrequire(name) end
     local entry = loaded[name]
     if entry then
-        if entry.loading then err(2, 'require: "%s" requires itself, by way of other files', name) end
+        if entry.loading then err(2, 'require: "%s" requires itself through other files', name) end
         return entry.value
     end
     entry = { loading = true }

@@ -15,25 +15,28 @@ local function symmetric(a)
     return (2 * value - 1) * a
 end
 
-local function addBox(position, size, mesh, color)
+local function addBox(position, size, color)
     scene.spawn{
-        position = position, mesh = mesh and "box" or nil, color = color,
+        position = position, mesh = color and "box" or nil, color = color,
         body = { type = "static", shape = "box", size = size },
     }
+end
+
+local function addShown(position, size)
+    scene.spawn{ position = position, scale = size, mesh = "box", color = { 0.3, 0.33, 0.4 } }
 end
 
 -- Floor with its top at y = 0 and four walls, 40 m high, whose inner faces are h away. Walls take
 -- part in the simulation only; what is drawn of them is low enough to look inside.
 local function addBin(h, shown)
-    local stone, rim = { 0.42, 0.45, 0.52 }, { 0.3, 0.33, 0.4 }
-    addBox({ 0, -1, 0 }, { 2 * h + 4, 2, 2 * h + 4 }, true, stone)
+    addBox({ 0, -1, 0 }, { 2 * h + 4, 2, 2 * h + 4 }, { 0.42, 0.45, 0.52 })
     if not walls then return end
     for _, side in ipairs{ 1, -1 } do
         addBox({ side * (h + 0.5), 20, 0 }, { 1, 40, 2 * h + 2 })
         addBox({ 0, 20, side * (h + 0.5) }, { 2 * h + 2, 40, 1 })
         local height = side < 0 and shown or 0.6
-        scene.spawn{ position = { side * (h + 0.5), height / 2, 0 }, scale = { 1, height, 2 * h + 2 }, mesh = "box", color = rim }
-        scene.spawn{ position = { 0, height / 2, side * (h + 0.5) }, scale = { 2 * h, height, 1 }, mesh = "box", color = rim }
+        addShown({ side * (h + 0.5), height / 2, 0 }, { 1, height, 2 * h + 2 })
+        addShown({ 0, height / 2, side * (h + 0.5) }, { 2 * h, height, 1 })
     end
 end
 
@@ -58,7 +61,10 @@ end
 local function addLights(h, depth)
     gfx.setBackground(0.025, 0.03, 0.045)
     gfx.setAmbient(0.16, 0.18, 0.22)
-    gfx.newLight{ type = "directional", direction = { -0.45, -1, -0.3 }, color = { 1, 0.95, 0.86 }, intensity = 2.6 }
+    gfx.newLight{
+        type = "directional", direction = { -0.45, -1, -0.3 },
+        color = { 1, 0.95, 0.86 }, intensity = 2.6,
+    }
     for i, color in ipairs{ { 1, 0.45, 0.2 }, { 0.25, 0.6, 1 } } do
         gfx.newLight{
             position = { (i * 2 - 3) * h * 0.7, depth + 4, h * 0.5 },
@@ -77,7 +83,8 @@ function corsac.load()
     addSpheres(m)
     addLights(h, depth)
     gfx.setCamera{
-        position = { h * 1.9, depth + h * 1.5, h * 2.3 }, target = { -h * 0.05, depth * 0.35, 0 },
+        position = { h * 1.9, depth + h * 1.5, h * 2.3 },
+        target = { -h * 0.05, depth * 0.35, 0 },
         fov = 0.75, far = 10 * h + 60,
     }
     corsac.expect("accuracy.nan", "==", 0)

@@ -1,0 +1,730 @@
+---@meta
+-- Types for the Lua language server, written by `make docs`.
+
+---@class corsac.AxisAngle
+---@field axis number[]
+---@field angle number radians
+
+---A thing in the scene.
+---@class corsac.Entity
+local Entity = {}
+
+---Where it is in the world.
+---@return number x
+---@return number y
+---@return number z
+function Entity:getPosition() end
+
+---Teleports it, its body and its children.
+---@param x number
+---@param y number
+---@param z number
+function Entity:setPosition(x, y, z) end
+
+---Its rotation in the world as a quaternion.
+---@return number x
+---@return number y
+---@return number z
+---@return number w
+function Entity:getRotation() end
+
+---Turns it; the quaternion is normalised.
+---@param x number
+---@param y number
+---@param z number
+---@param w number
+function Entity:setRotation(x, y, z, w) end
+
+---Scales its mesh and its children, never its body.
+---@param x number
+---@param y number
+---@param z number
+function Entity:setScale(x, y, z) end
+
+---Colour that multiplies its material's.
+---@param r number
+---@param g number
+---@param b number
+---@param a? number
+function Entity:setColor(r, g, b, a) end
+
+---Its body, or nil.
+---@return corsac.Body? body
+function Entity:getBody() end
+
+---What moves its model, or nil.
+---@return corsac.Animator? animator
+function Entity:getAnimator() end
+
+---The name it was given, "" without.
+---@return string name
+function Entity:getName() end
+
+---The entity it hangs on, or nil.
+---@return corsac.Entity? parent
+function Entity:getParent() end
+
+---Hangs it on another entity (nil: on none); it stays where it is.
+---@param parent? corsac.Entity new parent
+function Entity:setParent(parent) end
+
+---Whether it was destroyed; every other method then raises an error.
+---@return boolean destroyed
+function Entity:isDestroyed() end
+
+---Removes it, its body, its mesh and its children.
+function Entity:destroy() end
+
+---A rigid body.
+---@class corsac.Body
+local Body = {}
+
+---Where its origin is.
+---@return number x
+---@return number y
+---@return number z
+function Body:getPosition() end
+
+---Teleports it.
+---@param x number
+---@param y number
+---@param z number
+function Body:setPosition(x, y, z) end
+
+---Its rotation as a quaternion.
+---@return number x
+---@return number y
+---@return number z
+---@return number w
+function Body:getRotation() end
+
+---Turns it; the quaternion is normalised.
+---@param x number
+---@param y number
+---@param z number
+---@param w number
+function Body:setRotation(x, y, z, w) end
+
+---Velocity of its centre of mass.
+---@return number x
+---@return number y
+---@return number z
+function Body:getVelocity() end
+
+---Sets the velocity of its centre of mass.
+---@param x number
+---@param y number
+---@param z number
+function Body:setVelocity(x, y, z) end
+
+---Angular velocity in the world's frame.
+---@return number x
+---@return number y
+---@return number z
+function Body:getAngularVelocity() end
+
+---Sets the angular velocity.
+---@param x number
+---@param y number
+---@param z number
+function Body:setAngularVelocity(x, y, z) end
+
+---Pushes at its centre of mass during the next step.
+---@param x number
+---@param y number
+---@param z number
+function Body:applyForce(x, y, z) end
+
+---Changes its momentum at once.
+---@param x number
+---@param y number
+---@param z number
+---@param px? number where, in the world
+---@param py? number
+---@param pz? number
+function Body:applyImpulse(x, y, z, px, py, pz) end
+
+---Its mass; 0 for static bodies.
+---@return number mass
+function Body:getMass() end
+
+---The entity it belongs to, or nil.
+---@return corsac.Entity? entity
+function Body:getEntity() end
+
+---Whether it was destroyed; every other method then raises an error.
+---@return boolean destroyed
+function Body:isDestroyed() end
+
+---Removes it from the world.
+function Body:destroy() end
+
+---A source of light.
+---@class corsac.Light
+local Light = {}
+
+---Moves a point or spot light.
+---@param x number
+---@param y number
+---@param z number
+function Light:setPosition(x, y, z) end
+
+---Changes colour and intensity.
+---@param r number linear
+---@param g number linear
+---@param b number linear
+---@param intensity number point, spot: radiant intensity; directional: irradiance
+function Light:setColor(r, g, b, intensity) end
+
+---Removes the light.
+function Light:destroy() end
+
+---Meshes, skeleton and clips read from a file.
+---@class corsac.Model
+local Model = {}
+
+---Its skeleton, or nil.
+---@return corsac.Skeleton? skeleton
+function Model:getSkeleton() end
+
+---Its clip of that name.
+---@param name string as in the model's file
+---@return corsac.Clip clip
+function Model:getClip(name) end
+
+---All its clips.
+---@return corsac.Clip[] clips
+function Model:getClips() end
+
+---Bones with a bind pose.
+---@class corsac.Skeleton
+local Skeleton = {}
+
+---How many bones it has.
+---@return integer count
+function Skeleton:getBoneCount() end
+
+---Names of its bones, parents first.
+---@return string[] names
+function Skeleton:getBones() end
+
+---Removes it; clips and animators that use it must go first.
+function Skeleton:destroy() end
+
+---Keys of bones over time.
+---@class corsac.Clip
+local Clip = {}
+
+---Its name.
+---@return string name
+function Clip:getName() end
+
+---How long it is.
+---@return number duration
+function Clip:getDuration() end
+
+---Removes it; what plays it must go first.
+function Clip:destroy() end
+
+---States with clips and transitions between them.
+---@class corsac.Machine
+local Machine = {}
+
+---The machine as Graphviz text.
+---@return string text
+function Machine:getDot() end
+
+---Removes it; animators that use it must go first.
+function Machine:destroy() end
+
+---One animated skeleton.
+---@class corsac.Animator
+local Animator = {}
+
+---Plays a clip, whatever its machine says, fading from the pose of this moment.
+---@param clip corsac.Clip
+---@param length? number of the cross-fade
+---@param fade? "linear"|"smooth" shape of the cross-fade
+---@param loop? "loop"|"once"|"pingpong" what happens at its end
+function Animator:play(clip, length, fade, loop) end
+
+---Changes to a state of its machine, as a transition would.
+---@param state string name
+---@param length? number of the cross-fade
+---@param fade? "linear"|"smooth" shape of the cross-fade
+function Animator:go(state, length, fade) end
+
+---Sends an event to its machine; transitions of the next step hear it.
+---@param event string name
+function Animator:send(event) end
+
+---Sets a parameter of its machine.
+---@param name string
+---@param value number
+function Animator:setParameter(name, value) end
+
+---Value of a parameter of its machine.
+---@param name string
+---@return number value
+function Animator:getParameter(name) end
+
+---Factor on its time; 0 stops, negative plays backwards.
+---@param speed number
+function Animator:setSpeed(speed) end
+
+---Goes to a place in the current clip.
+---@param time number
+function Animator:setTime(time) end
+
+---Place in the current clip.
+---@return number time
+function Animator:getTime() end
+
+---Name of the machine's current state, "" without one.
+---@return string state
+function Animator:getState() end
+
+---Progress of the cross-fade (1: none runs) and the state it leaves.
+---@return number progress
+---@return string from
+function Animator:getFade() end
+
+---Targets of the transitions from the current state, in order.
+---@return string[] states
+function Animator:getTransitions() end
+
+---Whether the current clip has come to its end.
+---@return boolean finished
+function Animator:isFinished() end
+
+---How far the root moved in the last step, in the animator's frame.
+---@return number x
+---@return number y
+---@return number z
+function Animator:getRootMotion() end
+
+---Where a bone is, in the model's frame, since the last step.
+---@param bone string name
+---@return number x
+---@return number y
+---@return number z
+function Animator:getBonePosition(bone) end
+
+---When false its pose is not computed; its machine still runs.
+---@param visible boolean
+function Animator:setVisible(visible) end
+
+---The entity it moves, or nil.
+---@return corsac.Entity? entity
+function Animator:getEntity() end
+
+---Whether it was destroyed; every other method then raises an error.
+---@return boolean destroyed
+function Animator:isDestroyed() end
+
+---Removes it; its entity then shows the bind pose.
+function Animator:destroy() end
+
+---The run: parameters, time, log.
+---@class corsac
+---@field load? fun(args: string[])
+---@field fixed? fun(dt: number)
+---@field update? fun(dt: number)
+---@field draw? fun()
+---@field event? fun(name: string, ...)
+---@field quit? fun()
+---@field conf? fun(t: table)
+---@field reload? fun(state: table)
+corsac = {}
+
+---A parameter of the scene: its default, or what --set NAME=VALUE gave.
+---@param name string without a dot
+---@param default any number, boolean or string; decides the type
+---@return any value
+function corsac.param(name, default) end
+
+---Changes a setting of a room, as --set ROOM.NAME=VALUE does.
+---@param name string room, dot, name: "phys.solver"
+---@param value any number, boolean or string
+function corsac.set(name, value) end
+
+---Writes a line to the log (stderr); arguments are joined by spaces.
+---@param ... any any values
+function corsac.log(...) end
+
+---As log, and the line stands in `warnings` of the metrics.
+---@param ... any any values
+function corsac.warn(...) end
+
+---Ends the run after this callback.
+---@param code? integer exit code
+function corsac.exit(code) end
+
+---Changes to another scene at the next step boundary.
+---@param path string scene file or game folder
+---@param data? table plain data; the next scene finds it in corsac.getRunData()
+function corsac.run(path, data) end
+
+---Stops or resumes the steps; update and draw go on.
+---@param paused boolean true: no more steps
+function corsac.setPaused(paused) end
+
+---Speed of the loop against real time; the step itself keeps its length.
+---@param scale number 1: real time
+function corsac.setTimeScale(scale) end
+
+---Simulated time since the start.
+---@return number time
+function corsac.getTime() end
+
+---Steps done since the start.
+---@return integer step
+function corsac.getStep() end
+
+---Length of a step.
+---@return number dt
+function corsac.getDt() end
+
+---Seed of the run (--seed).
+---@return integer seed
+function corsac.getSeed() end
+
+---Whether the run has no window.
+---@return boolean headless
+function corsac.isHeadless() end
+
+---Checks that make a scene a test.
+---@class corsac.expect
+---@overload fun(metric: string, op: "<="|"<"|">="|">"|"=="|"~=", value: number)
+corsac.expect = {}
+
+---Checks a metric of the present step; if it falls short the run ends with exit code 3.
+---@param metric string name in the metrics file, with dots
+---@param op "<="|"<"|">="|">"|"=="|"~=" comparison
+---@param value number bound
+function corsac.expect.now(metric, op, value) end
+
+---The run's figures.
+corsac.metrics = {}
+
+---Sets a figure of your own: `user.NAME` in the metrics.
+---@param name string letters, digits, _
+---@param value number the figure
+function corsac.metrics.set(name, value) end
+
+---A figure of the metrics by its name with dots, "counts.bodies".
+---@param name string name in the metrics file
+---@return number value
+function corsac.metrics.get(name) end
+
+---Keys, buttons and actions, sampled once per step.
+corsac.input = {}
+
+---Whether a key, mouse button or action is held at this step.
+---@param name string "space", "mouse1", an action
+---@return boolean down
+function corsac.input.isDown(name) end
+
+---Value of an input axis at this step.
+---@param name string "mousex", an action
+---@return number value
+function corsac.input.getAxis(name) end
+
+---Entities: places in the world that carry bodies and meshes.
+corsac.scene = {}
+
+---@class corsac.scene.spawn.options.body.shapes
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field size? number|number[] box: lengths of its edges, m
+---@field radius? number sphere, capsule, cylinder, m
+---@field height? number cylinder: whole; capsule: its straight part, m
+---@field normal? number[] plane: direction of its free side
+---@field points? number[] hull: its corners, x y z after x y z, m
+---@field density? number mass per volume, kg/m^3
+---@field friction? number Coulomb's coefficient
+---@field restitution? number share of the speed kept in a bounce
+---@field position? number[] in the body's frame, m
+---@field rotation? number[]|corsac.AxisAngle in the body's frame
+
+---@class corsac.scene.spawn.options.body
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field size? number|number[] box: lengths of its edges, m
+---@field radius? number sphere, capsule, cylinder, m
+---@field height? number cylinder: whole; capsule: its straight part, m
+---@field normal? number[] plane: direction of its free side
+---@field points? number[] hull: its corners, x y z after x y z, m
+---@field density? number mass per volume, kg/m^3
+---@field friction? number Coulomb's coefficient
+---@field restitution? number share of the speed kept in a bounce
+---@field shapes? corsac.scene.spawn.options.body.shapes[] several shapes in place of one
+---@field type? "dynamic"|"static"|"kinematic" how it moves
+---@field velocity? number[] at the start, m/s
+---@field angularVelocity? number[] at the start, rad/s
+---@field linearDamping? number loss of velocity, 1/s
+---@field angularDamping? number loss of angular velocity, 1/s
+---@field gravityScale? number factor on gravity
+---@field layer? integer collision layer
+
+---@class corsac.scene.spawn.options
+---@field position? number[] in its parent's frame, m
+---@field rotation? number[]|corsac.AxisAngle in its parent's frame
+---@field scale? number|number[] of the mesh and of children
+---@field parent? corsac.Entity entity it hangs on
+---@field body? corsac.scene.spawn.options.body its rigid body
+---@field mesh? string "box", "sphere", "capsule", "cylinder" or "plane"; takes the size of the body
+---@field color? number[] multiplies the material's
+---@field model? corsac.Model shown in place of a mesh
+---@field machine? corsac.Machine state machine that moves the model
+---@field clip? corsac.Clip clip the model plays, without a machine
+---@field name? string for corsac.scene.find
+
+---Makes an entity: a place in the world with a body, a mesh, or both.
+---@param options corsac.scene.spawn.options the entity
+---@return corsac.Entity entity
+function corsac.scene.spawn(options) end
+
+---The oldest entity of that name, or nil.
+---@param name string as given to spawn
+---@return corsac.Entity? entity
+function corsac.scene.find(name) end
+
+---How many entities there are.
+---@return integer count
+function corsac.scene.getCount() end
+
+---Rigid bodies: metres, kilograms, seconds, radians.
+corsac.phys = {}
+
+---Sets the acceleration of every body.
+---@param x number
+---@param y number
+---@param z number
+function corsac.phys.setGravity(x, y, z) end
+
+---The acceleration of every body.
+---@return number x
+---@return number y
+---@return number z
+function corsac.phys.getGravity() end
+
+---@class corsac.phys.newBody.options.shapes
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field size? number|number[] box: lengths of its edges, m
+---@field radius? number sphere, capsule, cylinder, m
+---@field height? number cylinder: whole; capsule: its straight part, m
+---@field normal? number[] plane: direction of its free side
+---@field points? number[] hull: its corners, x y z after x y z, m
+---@field density? number mass per volume, kg/m^3
+---@field friction? number Coulomb's coefficient
+---@field restitution? number share of the speed kept in a bounce
+---@field position? number[] in the body's frame, m
+---@field rotation? number[]|corsac.AxisAngle in the body's frame
+
+---@class corsac.phys.newBody.options
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field size? number|number[] box: lengths of its edges, m
+---@field radius? number sphere, capsule, cylinder, m
+---@field height? number cylinder: whole; capsule: its straight part, m
+---@field normal? number[] plane: direction of its free side
+---@field points? number[] hull: its corners, x y z after x y z, m
+---@field density? number mass per volume, kg/m^3
+---@field friction? number Coulomb's coefficient
+---@field restitution? number share of the speed kept in a bounce
+---@field shapes? corsac.phys.newBody.options.shapes[] several shapes in place of one
+---@field type? "dynamic"|"static"|"kinematic" how it moves
+---@field velocity? number[] at the start, m/s
+---@field angularVelocity? number[] at the start, rad/s
+---@field linearDamping? number loss of velocity, 1/s
+---@field angularDamping? number loss of angular velocity, 1/s
+---@field gravityScale? number factor on gravity
+---@field layer? integer collision layer
+---@field position? number[] origin, m
+---@field rotation? number[]|corsac.AxisAngle
+
+---Makes a body without an entity: it is drawn as a debug shape only.
+---@param options corsac.phys.newBody.options the body
+---@return corsac.Body body
+function corsac.phys.newBody(options) end
+
+---How many bodies the world has.
+---@return integer count
+function corsac.phys.getBodyCount() end
+
+---Camera, lights and what is drawn over the frame.
+corsac.gfx = {}
+
+---Colour where nothing is drawn.
+---@param r number linear
+---@param g number linear
+---@param b number linear
+function corsac.gfx.setBackground(r, g, b) end
+
+---Light that comes from everywhere.
+---@param r number linear
+---@param g number linear
+---@param b number linear
+function corsac.gfx.setAmbient(r, g, b) end
+
+---@class corsac.gfx.setCamera.options
+---@field position? number[] of the eye, m
+---@field target? number[] point it looks at, m
+---@field rotation? number[]|corsac.AxisAngle in place of target; looks along -Z
+---@field fov? number vertical field of view, rad
+---@field near? number nearest visible distance, m
+---@field far? number no point or spot light is seen beyond, m
+
+---Places the camera.
+---@param options corsac.gfx.setCamera.options the camera
+function corsac.gfx.setCamera(options) end
+
+---Puts the camera at x, y, z, looking at tx, ty, tz.
+---@param x number
+---@param y number
+---@param z number
+---@param tx number
+---@param ty number
+---@param tz number
+function corsac.gfx.lookAt(x, y, z, tx, ty, tz) end
+
+---Position and rotation of the camera.
+---@return number x
+---@return number y
+---@return number z
+---@return number qx
+---@return number qy
+---@return number qz
+---@return number qw
+function corsac.gfx.getCamera() end
+
+---@class corsac.gfx.newLight.options
+---@field type? "point"|"spot"|"directional" kind of source
+---@field position? number[] point, spot, m
+---@field direction? number[] spot, directional: where the light goes
+---@field color? number[] linear
+---@field intensity? number point, spot: radiant intensity; directional: irradiance
+---@field radius? number point, spot: no light beyond, m
+---@field inner? number spot: half angle of full light, rad
+---@field outer? number spot: half angle of any light, rad
+
+---Makes a light.
+---@param options corsac.gfx.newLight.options the light
+---@return corsac.Light light
+function corsac.gfx.newLight(options) end
+
+---How lights are assigned to what they light.
+---@param method "auto"|"forward"|"clustered"|"none"
+function corsac.gfx.setRender(method) end
+
+---Writes text over the frame; the origin is its top left corner.
+---@param text string UTF-8
+---@param x number left
+---@param y number top
+---@param size? number height of a line
+---@param color? number[] sRGB
+function corsac.gfx.print(text, x, y, size, color) end
+
+---Fills a rectangle over the frame.
+---@param x number left
+---@param y number top
+---@param w number width
+---@param h number height
+---@param color? number[] sRGB
+function corsac.gfx.rect(x, y, w, h, color) end
+
+---Draws an image file over the frame.
+---@param path string in the game's folder
+---@param x number left
+---@param y number top
+---@param w number width
+---@param h number height
+function corsac.gfx.image(path, x, y, w, h) end
+
+---Skeletons, clips and state machines.
+corsac.anim = {}
+
+---Reads a .cmodel with its meshes, skeleton and clips; once for each path.
+---@param path string virtual path
+---@return corsac.Model model
+function corsac.anim.loadModel(path) end
+
+---@class corsac.anim.newSkeleton.bones
+---@field name string of the bone
+---@field parent? string a bone listed before it
+---@field position? number[] in its parent's frame, m
+---@field rotation? number[]|corsac.AxisAngle in its parent's frame
+---@field scale? number|number[]
+
+---Makes a skeleton from its bones.
+---@param bones corsac.anim.newSkeleton.bones[] parents before children
+---@return corsac.Skeleton skeleton
+function corsac.anim.newSkeleton(bones) end
+
+---@class corsac.anim.newClip.options.keys
+---@field bone string which bone it moves
+---@field time number place in the clip; ascending for each bone, s
+---@field position? number[] in its parent's frame, m
+---@field rotation? number[]|corsac.AxisAngle in its parent's frame
+---@field scale? number|number[]
+
+---@class corsac.anim.newClip.options.events
+---@field time number place in the clip, s
+---@field name string told by corsac.anim.getEvents
+
+---@class corsac.anim.newClip.options
+---@field skeleton corsac.Skeleton whose bones it moves
+---@field name? string
+---@field duration number its length, s
+---@field keys corsac.anim.newClip.options.keys[] keys of its bones
+---@field events? corsac.anim.newClip.options.events[] names told at times
+---@field rootMotion? boolean the root's horizontal movement moves the entity
+---@field root? string bone of the root motion
+
+---Makes a clip from keys.
+---@param options corsac.anim.newClip.options the clip
+---@return corsac.Clip clip
+function corsac.anim.newClip(options) end
+
+---@class corsac.anim.newMachine.options.states
+---@field name string unique in the machine
+---@field clip corsac.Clip what it plays
+---@field loop? "loop"|"once"|"pingpong" what happens at the clip's end
+---@field speed? number factor on time; negative: backwards
+---@field onEnter? function called with the animator
+---@field onExit? function called with the animator
+---@field onTick? function called each step with the animator and dt
+---@field getSpeed? function gives a factor on time; called with the animator and the phase from 0 to 1
+
+---@class corsac.anim.newMachine.options.transitions
+---@field from? string state it leaves (nil: any other)
+---@field to string state it enters
+---@field condition? function called each step with the animator; true starts it
+---@field event? string starts when sent
+---@field parameter? string starts when it compares so with value
+---@field compare? ">"|"<"|">="|"<="|"=="|"~="
+---@field value? number
+---@field length? number of the cross-fade, s
+---@field fade? "linear"|"smooth" shape of the cross-fade
+---@field uninterruptible? boolean no other transition starts before its end
+---@field sync? boolean the target starts at the same phase
+
+---@class corsac.anim.newMachine.options
+---@field initial? string state it starts in
+---@field states corsac.anim.newMachine.options.states[]
+---@field transitions? corsac.anim.newMachine.options.transitions[] the first that matches goes
+---@field parameters? table names with their first values
+
+---Makes a state machine; many animators may share it.
+---@param options corsac.anim.newMachine.options the machine
+---@return corsac.Machine machine
+function corsac.anim.newMachine(options) end
+
+---Moves a skeleton without an entity.
+---@param skeleton corsac.Skeleton what it moves
+---@param machine? corsac.Machine chooses its clips
+---@param clip? corsac.Clip played without a machine
+---@return corsac.Animator animator
+function corsac.anim.newAnimator(skeleton, machine, clip) end
+
+---Clip events passed in the last step: tables {animator, name, time}.
+---@return table[] events
+function corsac.anim.getEvents() end
