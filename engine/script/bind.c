@@ -387,6 +387,7 @@ static void check_options(bind_path *path, const bind_arg *arg, int index, unsig
         expected(path, arg, index);
     }
     luaL_checkstack(L, 16, "options nest too deeply");
+    luaL_checkstack(L, 24, "too many options");
     check_keys(path, arg->fields, index);
     size_t depth = strlen(path->field);
     for (const bind_arg *field = arg->fields; field->name; field++) {
@@ -418,7 +419,11 @@ static void check_list(bind_path *path, const bind_arg *arg, int index, bind_lis
     for (uint32_t i = 0; i < out->count; i++) {
         snprintf(path->field + depth, sizeof path->field - depth, "%s%u", depth ? "." : "", i + 1);
         lua_rawgeti(L, index, (int)i + 1);
-        check_options(path, &item, lua_gettop(L), (unsigned char *)out->items + i * arg->size);
+        int top = lua_gettop(L);
+        check_options(path, &item, top, (unsigned char *)out->items + i * arg->size);
+        if (lua_gettop(L) == top) { // holds nothing that the struct knows by index
+            lua_pop(L, 1);
+        }
     }
     path->field[depth] = 0;
 }
