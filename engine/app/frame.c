@@ -1,4 +1,5 @@
-// Drawing: the device, a frame with overlay and error screen, pictures that were asked for.
+// Drawing: the device, a frame with overlay, pictures that were asked for. The error screen is the
+// script room's: script_draw shows it.
 #include <stdio.h>
 #include <string.h>
 
@@ -25,27 +26,6 @@ bool app_device_open(app_run *r, bool window) {
     return true;
 }
 
-// Text of the last error, wrapped by hand: lines of a traceback can be longer than the window.
-static void error_screen(const app_run *r, gfx_world *world) {
-    const float back[4] = {0.12f, 0.02f, 0.03f, 0.92f}, ink[4] = {1.0f, 0.92f, 0.88f, 1.0f};
-    const float size = 18.0f;
-    uint32_t width, height;
-    gfx_device_size(r->device, &width, &height);
-    gfx_rect(world, 0, 0, (float)width, (float)height, back);
-    gfx_print(world, 24, 20, size * 1.4f, ink, "The script failed. R: load again   Esc: quit");
-    size_t columns = CORE_MAX((size_t)((float)width - 48.0f) / 9, (size_t)20);
-    float y = 20 + size * 2.6f;
-    for (const char *at = script_last_error(r->script); *at && y < (float)height - size;) {
-        char line[512];
-        size_t length = CORE_MIN(strcspn(at, "\n"), CORE_MIN(columns, sizeof line - 1));
-        memcpy(line, at, length);
-        line[length] = 0;
-        gfx_print(world, 24, y, size, ink, line);
-        y += size * 1.35f;
-        at += length + (at[length] == '\n');
-    }
-}
-
 bool app_frame(app_run *r, float alpha) {
     gfx_world *world = scene_gfx(r->scene);
     if (!world) {
@@ -59,9 +39,6 @@ bool app_frame(app_run *r, float alpha) {
     if (r->overlay) {
         scene_counts(r->scene);
         gfx_overlay(world, r->metrics);
-    }
-    if (!r->opt->headless && script_error_count(r->script)) {
-        error_screen(r, world);
     }
     r->report.frames++;
     bool ok = gfx_device_render(r->device, world);

@@ -9,7 +9,6 @@
 #define CATCH_UP_STEPS 5  // most steps in one frame of a window
 #define KEY_ESCAPE     256
 #define KEY_F1         290
-#define KEY_R          'R'
 
 static void send_event(app_run *r, const gfx_event *e) {
     char letter[8], text[5] = "";
@@ -168,8 +167,8 @@ static void program_key(app_run *r, const gfx_event *e) {
     case KEY_F1 + 2:
         r->single_step = true;
         break;
-    case KEY_R:
-        r->reload |= failed && !r->recorder && !r->replay;
+    case KEY_F1 + 4:
+        r->reload |= !r->recorder && !r->replay;
         break;
     }
 }

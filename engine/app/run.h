@@ -69,7 +69,7 @@ script_host app_host(app_run *r);
 void app_loop(app_run *r);
 // frame.c
 bool app_device_open(app_run *r, bool window);
-bool app_frame(app_run *r, float alpha); // draws the scene, the overlay, the error screen
+bool app_frame(app_run *r, float alpha); // draws the scene and the overlay
 bool app_frame_wanted(const app_run *r, uint64_t step);
 bool app_frame_files(app_run *r, uint64_t step); // shots and video of this step
 // progress.c
