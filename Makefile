@@ -70,7 +70,7 @@ lab: all ## speed against accuracy, charted -> out/lab/report.html; LAB=quick: u
 	@$(OUT)/corsac lab $(if $(filter quick,$(LAB)),--quick)
 
 ##@ Check
-.PHONY: test test-long lint fmt
+.PHONY: test test-long lint fmt docs
 test: ## quick tests: unit tests under ASan and UBSan, command line and scene tests
 	@tools/setup.sh window || echo "tests that need a window will be skipped"
 	@$(MAKE) MODE=release all
@@ -100,7 +100,7 @@ docs: $(OUT)/corsac-apidoc ## docs/api.md and the editor stubs, from the tables 
 	@$(OUT)/corsac-apidoc stubs >scripts/types/corsac.lua
 
 ##@ Keep
-.PHONY: docs install clean distclean
+.PHONY: install clean distclean
 SHARE := $(DESTDIR)$(PREFIX)/share/corsac
 install: all ## program, library, headers, scripts and a pkg-config file below $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(SHARE)

@@ -20,7 +20,8 @@ function corsac.fixed()
   end
   alive = roots
   if corsac.getStep() % 5 == 0 and corsac.getStep() < 25 then
-    kept[#kept + 1] = corsac.scene.spawn{ body = { shape = "box", size = { 1, 1, 1 } }, position = { 0, 5 * #kept, 50 } }
+    kept[#kept + 1] = corsac.scene.spawn{ position = { 0, 5 * #kept, 50 },
+      body = { shape = "box", size = { 1, 1, 1 } } }
   end
 end
 
