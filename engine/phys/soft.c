@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define SOFT_COLORS 64u // colour 64: more contacts on one body than colours, solved one by one
-#define STIFFNESS   0.25f
+#define STIFFNESS   0.2f
 #define DAMPING     10.0f
 #define PUSH_MAX    3.0f // m/s
 

@@ -19,9 +19,13 @@ enum {
 // is slowed before it sinks in.
 #define PHYS_MARGIN 0.02f
 
-#define PHYS_TOUCH      0.0005f // gaps up to this count as touching in events
-#define PHYS_FAR        1e6f    // positions beyond are refused
-#define PHYS_BOUNCE_MIN 0.2f    // m/s: slower impacts do not bounce (they would never come to rest)
+// Points are kept while their bodies moved less than this to each other (m) and each turned less
+// than this (cosine of half the angle, 5 degrees).
+#define PHYS_KEEP_DISTANCE 0.02f
+#define PHYS_KEEP_COSINE   0.99905f
+#define PHYS_TOUCH         0.0005f // gaps up to this count as touching in events
+#define PHYS_FAR           1e6f    // positions beyond are refused
+#define PHYS_BOUNCE_MIN    0.2f // m/s: slower impacts do not bounce (they would never come to rest)
 
 enum {
     PHYS_BODY_FRAME = 1u,     // principal axes differ from the body's: `iq*` is used
@@ -98,6 +102,7 @@ CORE_COLUMNS_DECLARE(phys_shapes, PHYS_SHAPE_COLUMNS)
 typedef struct phys_point {
     core_vec3 ra, rb;
     float separation;     // m, < 0: overlap
+    float base;           // separation when the point was made
     float normal_impulse; // N s of a substep, carried from step to step
     uint32_t feature;     // which corner, edge or face made it
 } phys_point;
@@ -107,6 +112,9 @@ typedef struct phys_manifold {
     core_vec3 friction; // N s, on b, sum over the points
     float twist;        // N m s about the normal, on b
     phys_point point[4];
+    // Where both bodies were when the points were made: rotations, and b's centre seen from a.
+    core_quat qa, qb;
+    core_vec3 offset;
 } phys_manifold;
 
 // Pairs whose shapes can touch in one point without an arm on either side (ball on ball, ball on
