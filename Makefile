@@ -104,7 +104,8 @@ docs: $(OUT)/corsac-apidoc ## docs/api.md and the editor stubs, from the tables 
 SHARE := $(DESTDIR)$(PREFIX)/share/corsac
 install: all ## program, library, headers, scripts and a pkg-config file below $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(SHARE)
-	install $(OUT)/corsac $(DESTDIR)$(PREFIX)/bin/
+	install $(OUT)/corsac $(OUT)/corsac-convert $(DESTDIR)$(PREFIX)/bin/
+	install -m 644 $(OUT)/libcorsac-convert.so $(DESTDIR)$(PREFIX)/lib/
 	install -m 644 $(OUT)/libcorsac.a $(DESTDIR)$(PREFIX)/lib/
 	for header in $(PUBLIC_HEADERS:engine/%=%); do \
 	    install -Dm 644 engine/$$header $(DESTDIR)$(PREFIX)/include/corsac/$$header || exit; done

@@ -39,7 +39,7 @@ PUBLIC_HEADERS := $(foreach room,phys gfx anim nav audio asset scene script,$(wi
     $(filter-out engine/core/simd_% %_internal.h,$(wildcard engine/core/*.h))
 
 .PHONY: all
-all: $(OUT)/libcorsac.a $(if $(APP_SRC),$(OUT)/corsac)
+all: $(OUT)/libcorsac.a $(if $(APP_SRC),$(OUT)/corsac) $(OUT)/corsac-convert $(OUT)/libcorsac-convert.so
 
 $(OBJ)/%.o: %.c $(OBJ)/flags | $(GEN_READY)
 	$(COMPILE) -c -o $@ $<
@@ -57,6 +57,19 @@ $(OUT)/libcorsac.a: $(LIB_OBJ) $(OBJ)/members
 	@mkdir -p $(@D); echo "  AR    $@"; rm -f $@; $(AR) rcs $@ $(LIB_OBJ)
 $(OUT)/corsac: $(APP_OBJ) $(OUT)/libcorsac.a $(OBJ)/link
 	$(LINK) $(WRAP_FLAGS) -o $@ $(APP_OBJ) $(OUT)/libcorsac.a $(LIBS)
+
+# The converter: a program and a library that the engine loads at run time. Both are made of the
+# converter and the two rooms it needs, position-independent and with only its one function visible.
+CONVERT_SRC := $(filter-out tools/convert/main.c,$(wildcard tools/convert/*.c)) $(wildcard engine/asset/*.c engine/core/*.c)
+CONVERT_OBJ := $(CONVERT_SRC:%.c=$(OBJ)/pic/%.o)
+CONVERT_MAIN := $(OBJ)/pic/tools/convert/main.o
+CONVERT_LIBS := -Wl,--as-needed $(ASSIMP_LIBS) -lcjson -lstb -lm -lpthread
+$(OBJ)/pic/%.o: %.c $(OBJ)/flags | $(GEN_READY)
+	$(COMPILE) $(ASSIMP_CFLAGS) -fPIC -fvisibility=hidden -c -o $@ $<
+$(OUT)/corsac-convert: $(CONVERT_OBJ) $(CONVERT_MAIN) $(OBJ)/link
+	$(LINK) -o $@ $(CONVERT_OBJ) $(CONVERT_MAIN) $(CONVERT_LIBS)
+$(OUT)/libcorsac-convert.so: $(CONVERT_OBJ) $(OBJ)/link
+	$(LINK) -shared -o $@ $(CONVERT_OBJ) $(CONVERT_LIBS)
 
 # Test programs: tests/ROOM/test_NAME.c -> $(OUT)/tests/ROOM/test_NAME, with the references of
 # tests/ref and the helpers of tests/support. Only programs of the rooms that run Lua wrap the C
@@ -85,4 +98,4 @@ $(foreach room,$(TEST_ROOMS),$(eval $(call check_room,$(room))))
 check-%:
 	@test -d engine/$* && echo "no tests/$*/test_*.c yet"
 
--include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_AID:.o=.d) $(TEST_SRC:%.c=$(OBJ)/%.d) $(LONG_SRC:%.c=$(OBJ)/%.d)
+-include $(CONVERT_OBJ:.o=.d) $(CONVERT_MAIN:.o=.d) $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_AID:.o=.d) $(TEST_SRC:%.c=$(OBJ)/%.d) $(LONG_SRC:%.c=$(OBJ)/%.d)

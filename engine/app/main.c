@@ -14,6 +14,7 @@ typedef struct command {
 static const command commands[] = {
     {"run", "SCENE.lua|DIR [options] [-- ARGS]", "run a scene or a game", app_command_run},
     {"new", "DIR", "make a project that runs", app_command_new},
+    {"convert", "IN OUT_DIR [--dry-run]", "a model to the engine's files", app_command_convert},
     {"info", "", "versions, instruction sets, graphics", app_command_info},
     {"lab", "[NAME...] [--quick] [--out DIR]", "chart speed against accuracy", app_command_lab},
     {"lab-run", "NAME [--case JSON]", "run one lab kernel on one case", app_command_lab_run},
