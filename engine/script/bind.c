@@ -630,6 +630,27 @@ static int call_module(lua_State *L) { // corsac.expect(...): drop the module it
     return call_function(L);
 }
 
+static int call_numbers(bind_path *path, const bind_fn *fn, core_handle self) {
+    lua_State *L = path->L;
+    double v[BIND_NUMBERS_MAX] = {0};
+    bind_arg args[BIND_NUMBERS_MAX + 1] = {{0}};
+    bind_fn located = *fn; // the same declaration, its members placed in v
+    for (int i = 0; fn->args && fn->args[i].name; i++) {
+        args[i] = fn->args[i];
+        args[i].at = (size_t)i * sizeof v[0];
+    }
+    located.args = fn->args ? args : NULL;
+    check_args(path, &located, 2, (unsigned char *)v);
+    if (!fn->numbers(path->s, self, v)) {
+        bind_fail(L);
+    }
+    int returns = 0;
+    for (; fn->returns && fn->returns[returns].name; returns++) {
+        lua_pushnumber(L, v[returns]);
+    }
+    return returns;
+}
+
 static int call_method(lua_State *L) {
     const bind_fn *fn = lua_touserdata(L, lua_upvalueindex(1));
     script *s = lua_touserdata(L, lua_upvalueindex(2));
@@ -653,8 +674,17 @@ static int call_method(lua_State *L) {
     memset(args, 0, fn->size);
     memcpy(args, &object->handle, sizeof object->handle);
     check_phase(s, L, fn, path.owner);
+    if (fn->numbers) {
+        return call_numbers(&path, fn, object->handle);
+    }
     check_args(&path, fn, 2, args);
     return fn->run(s, L, args);
+}
+
+bool bind_call_numbers(script *s, const bind_fn *fn, const bind_type *type, uint32_t index,
+                       uint32_t generation, double *v) {
+    core_handle self = {index, generation};
+    return (fn->phases & s->phase) && type->alive(s, self) && fn->numbers(s, self, v);
 }
 
 // ---- names that do not exist ----

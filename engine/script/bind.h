@@ -102,6 +102,11 @@ typedef struct bind_return {
 } bind_return;
 
 typedef int bind_handler(script *s, lua_State *L, void *args);
+// A method whose arguments and returns are plain numbers: reads its arguments from v and leaves
+// its returns there (at most BIND_NUMBERS_MAX of each). False + core_fail. Compiled Lua calls it
+// without the stack in between; everything else reaches it through the same checks as a handler.
+enum { BIND_NUMBERS_MAX = 8 };
+typedef bool bind_number_method(script *s, core_handle self, double *v);
 
 typedef struct bind_fn {
     const char *name; // "setGravity"; NULL ends the list; "" makes the module itself callable
@@ -112,7 +117,9 @@ typedef struct bind_fn {
     unsigned phases;   // bind_phase bits
     bool mod;          // mods may call it
     uint32_t cost;     // instructions that a mod pays for one call, beside its own
-    bind_handler *run; // NULL: written in Lua (scripts/corsac), checked all the same
+    bind_handler *run; // NULL: `numbers`, or written in Lua (scripts/corsac), checked all the same
+    bind_number_method
+        *numbers; // in place of run; `size` is then free, BIND_NUMBER args without `at`
 } bind_fn;
 
 // A class of objects. Lua holds one userdata per object and state; it carries the handle only.
@@ -157,6 +164,11 @@ void bind_push_vec3(lua_State *L, core_vec3 v); // three numbers
 void bind_push_quat(lua_State *L, core_quat q); // four numbers
 // Handle of the object at a stack index, null when it is not one of that type.
 core_handle bind_object_handle(script *s, lua_State *L, int index, const bind_type *type);
+
+// What compiled Lua calls for a bind_number_method: false when the phase is wrong, the object is
+// dead or the method fails; the caller then goes the checked way, which words the error.
+bool bind_call_numbers(script *s, const bind_fn *fn, const bind_type *type, uint32_t index,
+                       uint32_t generation, double *v);
 
 // Raise a Lua error at the place of the calling script. They do not return.
 CORE_NORETURN void bind_error(lua_State *L, const char *fmt, ...) CORE_PRINTF(2, 3);

@@ -219,14 +219,6 @@ static bool body_alive(script *s, core_handle h) {
     return world && phys_body_alive(world, h);
 }
 
-typedef struct vector_args {
-    core_handle self;
-    double x, y, z;
-} vector_args;
-typedef struct quat_args {
-    core_handle self;
-    double x, y, z, w;
-} quat_args;
 typedef struct impulse_args {
     core_handle self;
     double x, y, z;
@@ -234,8 +226,13 @@ typedef struct impulse_args {
     bool has_point;
 } impulse_args;
 
-static core_vec3 vector_of(const vector_args *a) {
-    return core_v3((float)a->x, (float)a->y, (float)a->z);
+static core_vec3 vector_of(const double *v) {
+    return core_v3((float)v[0], (float)v[1], (float)v[2]);
+}
+static void give(double *v, core_vec3 value) {
+    v[0] = (double)value.x;
+    v[1] = (double)value.y;
+    v[2] = (double)value.z;
 }
 static int done(lua_State *L, bool good) {
     if (!good) {
@@ -245,16 +242,17 @@ static int done(lua_State *L, bool good) {
 }
 
 #define BODY_GETTER(name, read)                                                                    \
-    static int name(script *s, lua_State *L, void *args) {                                         \
-        core_vec3 v = {0, 0, 0};                                                                   \
-        done(L, read(scene_phys(s->scene), *(core_handle *)args, &v));                             \
-        bind_push_vec3(L, v);                                                                      \
-        return 3;                                                                                  \
+    static bool name(script *s, core_handle self, double *v) {                                     \
+        core_vec3 value;                                                                           \
+        if (!read(scene_phys(s->scene), self, &value)) {                                           \
+            return false;                                                                          \
+        }                                                                                          \
+        give(v, value);                                                                            \
+        return true;                                                                               \
     }
 #define BODY_SETTER(name, write)                                                                   \
-    static int name(script *s, lua_State *L, void *args) {                                         \
-        const vector_args *a = args;                                                               \
-        return done(L, write(scene_phys(s->scene), a->self, vector_of(a)));                        \
+    static bool name(script *s, core_handle self, double *v) {                                     \
+        return write(scene_phys(s->scene), self, vector_of(v));                                    \
     }
 BODY_GETTER(get_velocity, phys_body_velocity)
 BODY_GETTER(get_angular_velocity, phys_body_angular_velocity)
@@ -264,28 +262,27 @@ BODY_SETTER(set_angular_velocity, phys_body_set_angular_velocity)
 BODY_SETTER(apply_force, phys_body_apply_force)
 
 // A body that belongs to an entity is moved through it, so that interpolation starts anew.
-static int set_position(script *s, lua_State *L, void *args) {
-    const vector_args *a = args;
-    scene_entity e = scene_entity_of_body(s->scene, a->self);
-    return done(L, core_handle_is_null(e)
-                       ? phys_body_set_position(scene_phys(s->scene), a->self, vector_of(a))
-                       : scene_set_position(s->scene, e, vector_of(a)));
+static bool set_position(script *s, core_handle self, double *v) {
+    scene_entity e = scene_entity_of_body(s->scene, self);
+    return core_handle_is_null(e) ? phys_body_set_position(scene_phys(s->scene), self, vector_of(v))
+                                  : scene_set_position(s->scene, e, vector_of(v));
 }
 
-static int get_rotation(script *s, lua_State *L, void *args) {
-    core_quat q = core_quat_identity();
-    done(L, phys_body_rotation(scene_phys(s->scene), *(core_handle *)args, &q));
-    bind_push_quat(L, q);
-    return 4;
+static bool get_rotation(script *s, core_handle self, double *v) {
+    core_quat q;
+    if (!phys_body_rotation(scene_phys(s->scene), self, &q)) {
+        return false;
+    }
+    v[0] = (double)q.x, v[1] = (double)q.y, v[2] = (double)q.z, v[3] = (double)q.w;
+    return true;
 }
 
-static int set_rotation(script *s, lua_State *L, void *args) {
-    const quat_args *a = args;
+static bool set_rotation(script *s, core_handle self, double *v) {
     core_quat q =
-        core_quat_normalize((core_quat){(float)a->x, (float)a->y, (float)a->z, (float)a->w});
-    scene_entity e = scene_entity_of_body(s->scene, a->self);
-    return done(L, core_handle_is_null(e) ? phys_body_set_rotation(scene_phys(s->scene), a->self, q)
-                                          : scene_set_rotation(s->scene, e, q));
+        core_quat_normalize((core_quat){(float)v[0], (float)v[1], (float)v[2], (float)v[3]});
+    scene_entity e = scene_entity_of_body(s->scene, self);
+    return core_handle_is_null(e) ? phys_body_set_rotation(scene_phys(s->scene), self, q)
+                                  : scene_set_rotation(s->scene, e, q);
 }
 
 static int apply_impulse(script *s, lua_State *L, void *args) {
@@ -301,9 +298,9 @@ static int apply_impulse(script *s, lua_State *L, void *args) {
     return done(L, phys_body_apply_impulse(world, a->self, impulse, at));
 }
 
-static int get_mass(script *s, lua_State *L, void *args) {
-    lua_pushnumber(L, (double)phys_body_mass(scene_phys(s->scene), *(core_handle *)args));
-    return 1;
+static bool get_mass(script *s, core_handle self, double *v) {
+    v[0] = (double)phys_body_mass(scene_phys(s->scene), self);
+    return true;
 }
 
 static int get_entity(script *s, lua_State *L, void *args) {
@@ -327,20 +324,19 @@ static int is_destroyed(script *s, lua_State *L, void *args) {
 }
 
 #define XYZ_ARGS(unit_text)                                                                        \
-    BIND_ARGS({"x", BIND_NUMBER, BIND_AT(vector_args, x), "", unit_text},                          \
-              {"y", BIND_NUMBER, BIND_AT(vector_args, y), "", unit_text},                          \
-              {"z", BIND_NUMBER, BIND_AT(vector_args, z), "", unit_text})
+    BIND_ARGS({"x", BIND_NUMBER, .unit = unit_text}, {"y", BIND_NUMBER, .unit = unit_text},        \
+              {"z", BIND_NUMBER, .unit = unit_text})
 #define XYZ(unit_text)                                                                             \
     BIND_RETURNS({"x", "number", unit_text}, {"y", "number", unit_text}, {"z", "number", unit_text})
-#define GETTER(fn_name, text, unit_text, handler)                                                  \
+#define GETTER(fn_name, text, unit_text, method)                                                   \
     {                                                                                              \
-        fn_name, text, NULL, XYZ(unit_text), sizeof(core_handle), BIND_RUNNING,                    \
-            .mod = true, .cost = 4, .run = handler                                                 \
+        fn_name, text, NULL, XYZ(unit_text), .phases = BIND_RUNNING, .mod = true, .cost = 4,       \
+                                             .numbers = method                                     \
     }
-#define SETTER(fn_name, text, unit_text, handler)                                                  \
+#define SETTER(fn_name, text, unit_text, method)                                                   \
     {                                                                                              \
-        fn_name, text, XYZ_ARGS(unit_text), NULL, sizeof(vector_args), BIND_SIM,                   \
-            .mod = true, .cost = 8, .run = handler                                                 \
+        fn_name, text, XYZ_ARGS(unit_text), .phases = BIND_SIM, .mod = true, .cost = 8,            \
+                                            .numbers = method                                      \
     }
 
 static const bind_fn body_methods[] = {
@@ -349,13 +345,11 @@ static const bind_fn body_methods[] = {
     {"getRotation", "Its rotation as a quaternion.", NULL,
      BIND_RETURNS({"x", "number", NULL}, {"y", "number", NULL}, {"z", "number", NULL},
                   {"w", "number", NULL}),
-     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_rotation},
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = get_rotation},
     {"setRotation", "Turns it; the quaternion is normalised.",
-     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(quat_args, x), ""},
-               {"y", BIND_NUMBER, BIND_AT(quat_args, y), ""},
-               {"z", BIND_NUMBER, BIND_AT(quat_args, z), ""},
-               {"w", BIND_NUMBER, BIND_AT(quat_args, w), ""}),
-     NULL, sizeof(quat_args), BIND_SIM, .mod = true, .cost = 8, .run = set_rotation},
+     BIND_ARGS({"x", BIND_NUMBER, .unit = NULL}, {"y", BIND_NUMBER, .unit = NULL},
+               {"z", BIND_NUMBER, .unit = NULL}, {"w", BIND_NUMBER, .unit = NULL}),
+     .phases = BIND_SIM, .mod = true, .cost = 8, .numbers = set_rotation},
     GETTER("getVelocity", "Velocity of its centre of mass.", "m/s", get_velocity),
     SETTER("setVelocity", "Sets the velocity of its centre of mass.", "m/s", set_velocity),
     GETTER("getAngularVelocity", "Angular velocity in the world's frame.", "rad/s",
@@ -372,7 +366,7 @@ static const bind_fn body_methods[] = {
                {"pz", BIND_NUMBER, BIND_AT(impulse_args, pz), "", "m", .optional = true}),
      NULL, sizeof(impulse_args), BIND_SIM, .mod = true, .cost = 8, .run = apply_impulse},
     {"getMass", "Its mass; 0 for static bodies.", NULL, BIND_RETURNS({"mass", "number", "kg"}),
-     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_mass},
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = get_mass},
     {"getEntity", "The entity it belongs to, or nil.", NULL,
      BIND_RETURNS({"entity", "corsac.Entity?", NULL}), sizeof(core_handle), BIND_RUNNING,
      .mod = true, .cost = 4, .run = get_entity},
@@ -433,6 +427,17 @@ static int get_body_count(script *s, lua_State *L, void *args) {
     return 1;
 }
 
+typedef struct columns_options {
+    bool checked;
+} columns_options;
+typedef struct columns_call {
+    columns_options options;
+} columns_call;
+static const bind_arg columns_fields[] = {{"checked", BIND_BOOL, BIND_AT(columns_options, checked),
+                                           "checks every index and the view's age; slow",
+                                           .optional = true},
+                                          {0}};
+
 static const bind_arg new_body_fields[] = {
     BODY_FIELDS,
     {"position", BIND_VEC3, BIND_AT(new_body_args, position), "origin", "m", .optional = true},
@@ -453,6 +458,14 @@ static const bind_fn functions[] = {
                 .fields = new_body_fields}),
      BIND_RETURNS({"body", "corsac.Body", NULL}), sizeof(new_body_call), BIND_SIM, .mod = true,
      .cost = 2000, .run = new_body},
+    {"columns",
+     "All bodies as 0-based arrays px..pz, qx..qw, vx..vz, wx..wz of `n` rows, with row(body), "
+     "handle(row) and touch(row); valid until the callback ends. Velocities may be written, "
+     "followed by touch(row). A row out of range is not caught without `checked`.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(columns_call, options), "", .optional = true,
+                .def_text = "none", .fields = columns_fields}),
+     BIND_RETURNS({"columns", "corsac.Columns", NULL}), sizeof(columns_call), BIND_RUNNING,
+     .mod = false},
     {"getBodyCount", "How many bodies the world has.", NULL,
      BIND_RETURNS({"count", "integer", NULL}), 0, BIND_RUNNING, .mod = true, .cost = 4,
      .run = get_body_count},

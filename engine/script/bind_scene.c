@@ -73,14 +73,6 @@ static int get_count(script *s, lua_State *L, void *args) {
 
 // ---- entities ----
 
-typedef struct vector_args {
-    core_handle self;
-    double x, y, z;
-} vector_args;
-typedef struct quat_args {
-    core_handle self;
-    double x, y, z, w;
-} quat_args;
 typedef struct color_args {
     core_handle self;
     double r, g, b, a;
@@ -95,35 +87,35 @@ static int done(lua_State *L, bool good) {
     }
     return 0;
 }
-static core_vec3 vector_of(const vector_args *a) {
-    return core_v3((float)a->x, (float)a->y, (float)a->z);
+static core_vec3 vector_of(const double *v) {
+    return core_v3((float)v[0], (float)v[1], (float)v[2]);
 }
 
-static int get_position(script *s, lua_State *L, void *args) {
-    core_vec3 v = {0, 0, 0};
-    done(L, scene_position(s->scene, *(core_handle *)args, &v));
-    bind_push_vec3(L, v);
-    return 3;
+static bool get_position(script *s, core_handle self, double *v) {
+    core_vec3 p;
+    if (!scene_position(s->scene, self, &p)) {
+        return false;
+    }
+    v[0] = (double)p.x, v[1] = (double)p.y, v[2] = (double)p.z;
+    return true;
 }
-static int set_position(script *s, lua_State *L, void *args) {
-    const vector_args *a = args;
-    return done(L, scene_set_position(s->scene, a->self, vector_of(a)));
+static bool set_position(script *s, core_handle self, double *v) {
+    return scene_set_position(s->scene, self, vector_of(v));
 }
-static int get_rotation(script *s, lua_State *L, void *args) {
-    core_quat q = core_quat_identity();
-    done(L, scene_rotation(s->scene, *(core_handle *)args, &q));
-    bind_push_quat(L, q);
-    return 4;
+static bool get_rotation(script *s, core_handle self, double *v) {
+    core_quat q;
+    if (!scene_rotation(s->scene, self, &q)) {
+        return false;
+    }
+    v[0] = (double)q.x, v[1] = (double)q.y, v[2] = (double)q.z, v[3] = (double)q.w;
+    return true;
 }
-static int set_rotation(script *s, lua_State *L, void *args) {
-    const quat_args *a = args;
-    core_quat q =
-        core_quat_normalize((core_quat){(float)a->x, (float)a->y, (float)a->z, (float)a->w});
-    return done(L, scene_set_rotation(s->scene, a->self, q));
+static bool set_rotation(script *s, core_handle self, double *v) {
+    core_quat q = {(float)v[0], (float)v[1], (float)v[2], (float)v[3]};
+    return scene_set_rotation(s->scene, self, core_quat_normalize(q));
 }
-static int set_scale(script *s, lua_State *L, void *args) {
-    const vector_args *a = args;
-    return done(L, scene_set_scale(s->scene, a->self, vector_of(a)));
+static bool set_scale(script *s, core_handle self, double *v) {
+    return scene_set_scale(s->scene, self, vector_of(v));
 }
 static int set_color(script *s, lua_State *L, void *args) {
     const color_args *a = args;
@@ -169,27 +161,25 @@ static int is_destroyed(script *s, lua_State *L, void *args) {
 #define XYZ(unit_text)                                                                             \
     BIND_RETURNS({"x", "number", unit_text}, {"y", "number", unit_text}, {"z", "number", unit_text})
 #define XYZ_ARGS(unit_text)                                                                        \
-    BIND_ARGS({"x", BIND_NUMBER, BIND_AT(vector_args, x), "", unit_text},                          \
-              {"y", BIND_NUMBER, BIND_AT(vector_args, y), "", unit_text},                          \
-              {"z", BIND_NUMBER, BIND_AT(vector_args, z), "", unit_text})
+    BIND_ARGS({"x", BIND_NUMBER, .unit = unit_text}, {"y", BIND_NUMBER, .unit = unit_text},        \
+              {"z", BIND_NUMBER, .unit = unit_text})
+#define QUAT_ARGS                                                                                  \
+    BIND_ARGS({"x", BIND_NUMBER, .unit = NULL}, {"y", BIND_NUMBER, .unit = NULL},                  \
+              {"z", BIND_NUMBER, .unit = NULL}, {"w", BIND_NUMBER, .unit = NULL})
 
 static const bind_fn entity_methods[] = {
-    {"getPosition", "Where it is in the world.", NULL, XYZ("m"), sizeof(core_handle), BIND_RUNNING,
-     .mod = true, .cost = 4, .run = get_position},
-    {"setPosition", "Teleports it, its body and its children.", XYZ_ARGS("m"), NULL,
-     sizeof(vector_args), BIND_SIM, .mod = true, .cost = 8, .run = set_position},
+    {"getPosition", "Where it is in the world.", NULL, XYZ("m"), .phases = BIND_RUNNING,
+     .mod = true, .cost = 4, .numbers = get_position},
+    {"setPosition", "Teleports it, its body and its children.", XYZ_ARGS("m"), .phases = BIND_SIM,
+     .mod = true, .cost = 8, .numbers = set_position},
     {"getRotation", "Its rotation in the world as a quaternion.", NULL,
      BIND_RETURNS({"x", "number", NULL}, {"y", "number", NULL}, {"z", "number", NULL},
                   {"w", "number", NULL}),
-     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_rotation},
-    {"setRotation", "Turns it; the quaternion is normalised.",
-     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(quat_args, x), ""},
-               {"y", BIND_NUMBER, BIND_AT(quat_args, y), ""},
-               {"z", BIND_NUMBER, BIND_AT(quat_args, z), ""},
-               {"w", BIND_NUMBER, BIND_AT(quat_args, w), ""}),
-     NULL, sizeof(quat_args), BIND_SIM, .mod = true, .cost = 8, .run = set_rotation},
-    {"setScale", "Scales its mesh and its children, never its body.", XYZ_ARGS(NULL), NULL,
-     sizeof(vector_args), BIND_SIM, .mod = true, .cost = 8, .run = set_scale},
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = get_rotation},
+    {"setRotation", "Turns it; the quaternion is normalised.", QUAT_ARGS, .phases = BIND_SIM,
+     .mod = true, .cost = 8, .numbers = set_rotation},
+    {"setScale", "Scales its mesh and its children, never its body.", XYZ_ARGS(NULL),
+     .phases = BIND_SIM, .mod = true, .cost = 8, .numbers = set_scale},
     {"setColor", "Colour that multiplies its material's.",
      BIND_ARGS({"r", BIND_NUMBER, BIND_AT(color_args, r), "", NULL, BIND_NOT_NEGATIVE},
                {"g", BIND_NUMBER, BIND_AT(color_args, g), "", NULL, BIND_NOT_NEGATIVE},

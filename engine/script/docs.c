@@ -265,7 +265,11 @@ char *bind_docs_stubs(void) {
     text t = {0};
     add(&t,
         "---@meta\n-- Types for the Lua language server, written by `make docs`.\n\n"
-        "---@class corsac.AxisAngle\n---@field axis number[]\n---@field angle number radians\n\n");
+        "---@class corsac.AxisAngle\n---@field axis number[]\n---@field angle number radians\n\n"
+        "---@class corsac.Columns\n---@field n integer\n"
+        "---@field row fun(body: corsac.Body): integer\n"
+        "---@field handle fun(row: integer): corsac.Body\n"
+        "---@field touch fun(row: integer)\n---@field [string] number[]\n\n");
     for (int r = 0; bind_rooms[r]; r++) {
         for (int i = 0; bind_rooms[r]->types && bind_rooms[r]->types[i]; i++) {
             const bind_type *type = bind_rooms[r]->types[i];

@@ -41,6 +41,7 @@ struct script {
     const char *const *argv;
     int argc;
     int error_count;
+    uint64_t callback_count; // calls from C so far
     char *last_error;
     uint32_t stopped;     // bind_phase bits of callbacks that an error has stopped
     char *run_data;       // JSON handed to the next scene by corsac.run
@@ -60,6 +61,8 @@ typedef struct bind_object {
 // The engine's C side of Lua's base library: ordered pairs, printable names, seeded random numbers,
 // no clock, no files (state.c).
 lua_State *script_state_create(script *s);
+// The random stream of what runs now: the simulation's or the view's.
+core_rng *script_stream(script *s);
 // Embedded text of a file of scripts/corsac ("boot.lua"); NULL when there is none.
 const char *script_embedded(const char *name, size_t *size);
 // Loads a chunk from the mounted files, else from the embedded ones; leaves the function on the

@@ -152,6 +152,7 @@ bool script_call(script *s, uint32_t phase, int argc, int results) {
     lua_pushcclosure(L, with_traceback, 1);
     lua_insert(L, base);
     s->phase = phase;
+    s->callback_count++;
     bool good = lua_pcall(L, argc, results, base) == 0;
     s->phase = before;
     lua_remove(L, base);

@@ -1,7 +1,9 @@
 // Makes Lua states: LuaJIT's libraries cut down and remade by scripts/corsac/base.lua, with the C
 // half of it here.
 #include "core/log.h"
+#include "script/bind_body.h"
 #include "script/embedded.h"
+#include "script/fast.h"
 #include "script/internal.h"
 #include "script/libc.h"
 #include "script/order.h"
@@ -57,23 +59,40 @@ static int engine_simulating(lua_State *L) {
     return 1;
 }
 
-static core_rng *stream(script *s) {
+core_rng *script_stream(script *s) {
     bool view = (s->phase & BIND_VIEW) != 0;
     return scene_rng(s->scene, view ? CORE_RNG_VIEW : CORE_RNG_SIM);
 }
 
 static int engine_random(lua_State *L) {
-    lua_pushnumber(L, core_rng_double(stream(self(L))));
+    lua_pushnumber(L, core_rng_double(script_stream(self(L))));
     return 1;
 }
 
 static int engine_reseed(lua_State *L) {
-    core_rng *rng = stream(self(L));
+    core_rng *rng = script_stream(self(L));
     double seed = lua_tonumber(L, 1);
     uint64_t bits;
     memcpy(&bits, &seed, sizeof bits);
     *rng = core_rng_make(bits, rng->stream);
     return 0;
+}
+
+// bodyAt(row) -> Body
+static int engine_body_at(lua_State *L) {
+    script *s = self(L);
+    phys_world *world = scene_phys_if(s->scene);
+    double row = lua_tonumber(L, 1);
+    if (!world || lua_type(L, 1) != LUA_TNUMBER || row < 0 || row >= phys_body_count(world)) {
+        bind_error(L, "columns: handle(row) expects a row from 0 to n - 1");
+    }
+    bind_push(s, L, &bind_body_type, phys_body_at(world, (uint32_t)row));
+    return 1;
+}
+
+static int engine_callback_count(lua_State *L) {
+    lua_pushnumber(L, (double)self(L)->callback_count);
+    return 1;
 }
 
 static int engine_print(lua_State *L) {
@@ -130,12 +149,19 @@ static int engine_find_module(lua_State *L) {
     return 2;
 }
 
-static const luaL_Reg engine_functions[] = {
-    {"keys", script_order_keys},        {"next", script_order_next},
-    {"simulating", engine_simulating},  {"random", engine_random},
-    {"reseed", engine_reseed},          {"print", engine_print},
-    {"describe", engine_describe},      {"loadFile", engine_load_file},
-    {"findModule", engine_find_module}, {NULL, NULL}};
+static const luaL_Reg engine_functions[] = {{"keys", script_order_keys},
+                                            {"next", script_order_next},
+                                            {"simulating", engine_simulating},
+                                            {"random", engine_random},
+                                            {"reseed", engine_reseed},
+                                            {"print", engine_print},
+                                            {"describe", engine_describe},
+                                            {"loadFile", engine_load_file},
+                                            {"findModule", engine_find_module},
+                                            {"bodyAt", engine_body_at},
+                                            {"callbackCount", engine_callback_count},
+                                            {"fastMethods", script_fast_methods},
+                                            {NULL, NULL}};
 
 static void push_engine(script *s, lua_State *L) {
     lua_newtable(L);
@@ -144,6 +170,13 @@ static void push_engine(script *s, lua_State *L) {
         lua_pushcclosure(L, fn->func, 1);
         lua_setfield(L, -2, fn->name);
     }
+    script_fast *fast = lua_newuserdata(L, sizeof *fast);
+    *fast = script_fast_table(s);
+    lua_setfield(L, LUA_REGISTRYINDEX, "corsac.fast"); // keeps it alive
+    lua_pushlightuserdata(L, fast);
+    lua_setfield(L, -2, "fast");
+    lua_pushlightuserdata(L, (void *)(uintptr_t)&bind_body_type);
+    lua_setfield(L, -2, "bodyType");
     lua_newtable(L); // Lua halves of bindings, by full name
     lua_pushvalue(L, -1);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
@@ -176,14 +209,14 @@ lua_State *script_state_create(script *s) {
     luaL_openlibs(L);
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
-    bool good = run_part(s, L, "base");
+    bool good = run_part(s, L, "base") && run_part(s, L, "native") && run_part(s, L, "columns");
     if (good) {
         bind_install(s, L, false);
         lua_getfield(L, LUA_GLOBALSINDEX, "corsac");
         s->corsac_ref = luaL_ref(L, LUA_REGISTRYINDEX);
         lua_pushnil(L);
         lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
-        good = run_part(s, L, "boot");
+        good = run_part(s, L, "fast") && run_part(s, L, "boot");
         lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
         lua_getfield(L, -1, "errorScreen");
         s->error_screen_ref = luaL_ref(L, LUA_REGISTRYINDEX);

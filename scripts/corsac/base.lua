@@ -96,10 +96,10 @@ end
 
 -- Random numbers: one stream for the simulation, one for what only shows it ----------------------
 
-local uniform, reseed = engine.random, engine.reseed
+local reseed = engine.reseed
 
 function math.random(a, b)
-    local u = uniform()
+    local u = engine.random()
     if a == nil then return u end
     local low, high = 1, a
     if b ~= nil then low, high = a, b end

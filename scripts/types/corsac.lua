@@ -5,6 +5,13 @@
 ---@field axis number[]
 ---@field angle number radians
 
+---@class corsac.Columns
+---@field n integer
+---@field row fun(body: corsac.Body): integer
+---@field handle fun(row: integer): corsac.Body
+---@field touch fun(row: integer)
+---@field [string] number[]
+
 ---A thing in the scene.
 ---@class corsac.Entity
 local Entity = {}
@@ -545,6 +552,14 @@ function corsac.phys.getGravity() end
 ---@param options corsac.phys.newBody.options the body
 ---@return corsac.Body body
 function corsac.phys.newBody(options) end
+
+---@class corsac.phys.columns.options
+---@field checked? boolean checks every index and the view's age; slow
+
+---All bodies as 0-based arrays px..pz, qx..qw, vx..vz, wx..wz of `n` rows, with row(body), handle(row) and touch(row); valid until the callback ends. Velocities may be written, followed by touch(row). A row out of range is not caught without `checked`.
+---@param options? corsac.phys.columns.options
+---@return corsac.Columns columns
+function corsac.phys.columns(options) end
 
 ---How many bodies the world has.
 ---@return integer count
