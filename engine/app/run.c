@@ -355,7 +355,7 @@ static void write_results(app_run *r) {
     if (r->recorder && !app_recorder_close(r->recorder, r->report.hash)) {
         app_fail(r, APP_EXIT_USAGE);
     }
-    if (!o->quiet) {
+    if (!o->quiet && core_metrics_steps(r->metrics) > 0) { // else an error stands alone
         app_report_table(&r->report, people);
     }
     if (o->receipt) {
