@@ -10,7 +10,7 @@ GEN_READY := $(GEN)/ready-1
 ifneq ($(NEEDS_BUILD),)
 include build/packages.mk
 endif
-build/packages.mk:
+build/packages.mk: tools/setup.sh
 	@tools/setup.sh build
 $(GEN_READY): | build/packages.mk
 	@tools/setup.sh gen
