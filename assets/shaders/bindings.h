@@ -32,8 +32,11 @@
 #define GFX_TEX_METALLIC_ROUGHNESS 2
 #define GFX_TEX_OCCLUSION          3
 #define GFX_TEX_EMISSIVE           4
+#define GFX_TEX_DFG                5
 #define GFX_TEX_HDR                8
 #define GFX_TEX_IMAGE              9
+
+#define GFX_DFG_SIZE 64 // texels a side
 
 // Vertex attributes.
 #define GFX_ATTR_POSITION 0

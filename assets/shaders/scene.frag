@@ -14,32 +14,24 @@ layout(std430, binding = GFX_SSBO_MATERIALS) readonly buffer MaterialBlock {
     gfx_material_block materials[];
 };
 
-// Below this alpha the lobe of a point light is narrower than 32-bit arithmetic resolves.
-const float MIN_ROUGHNESS = 0.045;
-
 Surface surfaceOf(gfx_material_block m, vec4 base) {
     Surface s;
-    float metallic = m.emissive_metallic.w;
-    float roughness = clamp(m.params.x, MIN_ROUGHNESS, 1.0);
     s.position = v_world;
     s.view = viewDirection(v_world);
     s.normal = normalize(gl_FrontFacing ? v_normal : -v_normal);
     s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
-    s.diffuse = base.rgb * (1.0 - metallic);
-    s.f0 = mix(vec3(0.04), base.rgb, metallic);
-    s.alpha = roughness * roughness;
+    setMaterial(s, base.rgb, m.emissive_metallic.w, m.params.x);
     return s;
 }
 
-// Hemisphere ambient: sky above, ground below, on the diffuse lobe and on a rough mirror direction.
+// Hemisphere ambient: sky above, ground below; the specular lobe sees the half sphere round the
+// mirrored view, the sharper the smoother.
 vec3 ambientLight(Surface s) {
     vec3 sky = u_view.ambient_sky.rgb, ground = u_view.ambient_ground.rgb;
     vec3 irradiance = mix(ground, sky, 0.5 + 0.5 * s.normal.y);
     float up = reflect(-s.view, s.normal).y;
-    float sharp = mix(4.0, 0.5, s.alpha);
-    vec3 mirror = mix(ground, sky, clamp(0.5 + sharp * up, 0.0, 1.0));
-    vec3 fresnel = s.f0 + (max(vec3(1.0 - s.alpha), s.f0) - s.f0) * pow(1.0 - s.noV, 5.0);
-    return s.diffuse * irradiance + fresnel * mirror;
+    vec3 mirror = mix(ground, sky, clamp(0.5 + mix(4.0, 0.5, s.alpha) * up, 0.0, 1.0));
+    return s.diffuse * irradiance + s.specular * mirror;
 }
 
 void main() {

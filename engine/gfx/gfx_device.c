@@ -143,6 +143,7 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_clusters_release(&d->clusters);
     gfx_cluster_lights_release(&d->cluster_lights);
     glDeleteBuffers(1, &d->material_buffer);
+    glDeleteTextures(1, &d->dfg_texture);
     glDeleteVertexArrays(1, &d->empty_vao);
     release_targets(d);
     gfx_growing *const arrays[] = {&d->visible, &d->keys, &d->scratch, &d->commands, &d->batches};

@@ -112,7 +112,7 @@ struct gfx_device {
     gfx_clusters clusters;
     gfx_cluster_lights cluster_lights;
     gfx_stream view_block, light_block, instance_block, bone_block, draw_block;
-    GLuint material_buffer;
+    GLuint material_buffer, dfg_texture;
     uint64_t material_world, material_version;
     GLsync fence[GFX_FRAMES];
     uint32_t frame; // turn of the streams

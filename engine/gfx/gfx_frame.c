@@ -80,6 +80,7 @@ static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
     d->passes++;
     const float *c = world->background;
     const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
+    glBindTextureUnit(GFX_TEX_DFG, d->dfg_texture);
     glBindFramebuffer(GL_FRAMEBUFFER, d->hdr_target);
     glViewport(0, 0, (GLsizei)d->width, (GLsizei)d->height);
     glDisable(GL_BLEND);
@@ -118,6 +119,31 @@ static bool pass_tonemap(gfx_device *d) {
     return true;
 }
 
+// The albedo table of brdf.glsl, made once.
+static bool make_dfg(gfx_device *d) {
+    GLuint program = gfx_shaders_get(&d->shaders, "fullscreen.vert", "dfg.frag", 0), target;
+    if (!program) {
+        return false;
+    }
+    glCreateTextures(GL_TEXTURE_2D, 1, &d->dfg_texture);
+    glTextureStorage2D(d->dfg_texture, 1, GL_RG16F, GFX_DFG_SIZE, GFX_DFG_SIZE);
+    glTextureParameteri(d->dfg_texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(d->dfg_texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(d->dfg_texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glCreateFramebuffers(1, &target);
+    glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0, d->dfg_texture, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glViewport(0, 0, GFX_DFG_SIZE, GFX_DFG_SIZE);
+    glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glUseProgram(program);
+    glBindVertexArray(d->empty_vao);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDeleteFramebuffers(1, &target);
+    return true;
+}
+
 static bool draw_world(gfx_device *d, gfx_world *world) {
     gfx_view view;
     gfx_camera camera = gfx_world_camera_or_default(world);
@@ -152,7 +178,7 @@ bool gfx_device_render(gfx_device *device, gfx_world *world) {
         return false;
     }
     begin_turn(d);
-    bool ok = draw_world(d, world);
+    bool ok = (d->dfg_texture || make_dfg(d)) && draw_world(d, world);
     end_turn(d);
     return ok && gfx_device_check(d, "gfx_device_render", errors);
 }
