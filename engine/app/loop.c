@@ -100,6 +100,9 @@ static void step(app_run *r) {
         r->sampled_at = number;
     }
     uint64_t allocations = core_alloc_count() - before;
+    if (!app_sound_step(&r->sound, r->scene, (double)number * r->report.dt, !r->opt->headless)) {
+        app_fail(r, APP_EXIT_ENVIRONMENT);
+    }
     if (r->opt->headless) {
         headless_frame(r, number);
     }

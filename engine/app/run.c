@@ -296,6 +296,7 @@ void app_scene_close(app_run *r) {
         }
         script_destroy(r->script);
     }
+    app_sound_leave_scene(&r->sound);
     if (r->scene) {
         r->report.hash = scene_hash(r->scene);
         scene_destroy(r->scene);
@@ -340,6 +341,9 @@ static bool open_outputs(app_run *r) {
     if (o->metrics_csv && !app_report_open_csv(&r->report, o->metrics_csv)) {
         return app_fail(r, APP_EXIT_USAGE);
     }
+    if (o->audio && !app_sound_open_file(&r->sound, o->audio)) {
+        return app_fail(r, APP_EXIT_USAGE);
+    }
     compare_files(r);
     if (o->record) {
         r->recorder = app_recorder_open(o->record, &r->start);
@@ -353,6 +357,9 @@ static void write_results(app_run *r) {
     bool silent = o->hash || (o->metrics && strcmp(o->metrics, "-") == 0);
     FILE *people = silent ? stderr : stdout;
     if (r->recorder && !app_recorder_close(r->recorder, r->report.hash)) {
+        app_fail(r, APP_EXIT_USAGE);
+    }
+    if (!app_sound_close(&r->sound)) {
         app_fail(r, APP_EXIT_USAGE);
     }
     if (!o->quiet && core_metrics_steps(r->metrics) > 0) { // else an error stands alone

@@ -7,6 +7,7 @@
 #include "app/journal.h"
 #include "app/options.h"
 #include "app/report.h"
+#include "app/sound.h"
 #include "script/script.h"
 
 typedef enum app_exit { // design page 4
@@ -35,6 +36,7 @@ typedef struct app_run {
     script_conf conf;
     gfx_device *device;
     app_input input;
+    app_sound sound;
     app_report report;
     app_recorder *recorder;
     app_replay *replay;

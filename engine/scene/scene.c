@@ -14,7 +14,7 @@ CORE_COLUMNS_DEFINE(scene_entities, SCENE_ENTITY_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_names, SCENE_NAME_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_clock, SCENE_CLOCK_COLUMNS)
 
-static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim"};
+static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim", "audio"};
 
 scene_desc scene_desc_default(void) {
     return (scene_desc){.dt = 1.0f / 60.0f, .max_entities = 1u << 20, .cookie = SCENE_COOKIE};
@@ -61,6 +61,7 @@ void scene_destroy(scene *s) {
     }
     scene_models_destroy(s);
     anim_world_destroy(s->anim);
+    scene_audio_destroy(s);
     if (s->phys) {
         phys_world_destroy(s->phys);
     }
@@ -81,7 +82,7 @@ void scene_set_hooks(scene *s, const scene_hooks *hooks) {
 }
 
 bool scene_configure(scene *s, core_jobs *jobs, uint64_t seed, float dt) {
-    if (s->phys || s->gfx || s->anim || scene_step_index(s) || scene_entity_count(s)) {
+    if (s->phys || s->gfx || s->anim || s->audio || scene_step_index(s) || scene_entity_count(s)) {
         return core_fail("scene: workers, seed and dt are fixed once the scene has begun; set them "
                          "in corsac.conf or on the command line");
     }
@@ -105,47 +106,24 @@ bool scene_room_built(const char *room) {
     return false;
 }
 
-static phys_world *make_phys(const scene *s, uint32_t max_bodies) {
-    phys_world_desc desc = phys_world_desc_default();
-    desc.jobs = s->jobs;
-    desc.metrics = s->metrics;
-    if (max_bodies) {
-        desc.max_bodies = max_bodies;
-    }
-    return phys_world_create(&desc);
-}
-
-static gfx_world *make_gfx(const scene *s, uint32_t max_instances) {
-    gfx_world_desc desc = gfx_world_desc_default();
-    desc.jobs = s->jobs;
-    desc.metrics = s->metrics;
-    if (max_instances) {
-        desc.max_instances = max_instances;
-        desc.max_lights = max_instances;
-    }
-    return gfx_world_create(&desc);
-}
-
 phys_world *scene_phys(scene *s) {
     if (!s->phys) {
-        s->phys = make_phys(s, 0);
-        for (uint32_t i = 0; s->phys && i < s->setting_count; i++) {
-            if (strcmp(s->setting[i].room, "phys") == 0) {
-                phys_world_set(s->phys, s->setting[i].name, s->setting[i].value);
-            }
-        }
+        phys_world_desc desc = phys_world_desc_default();
+        desc.jobs = s->jobs;
+        desc.metrics = s->metrics;
+        s->phys = phys_world_create(&desc);
+        scene_settings_apply(s, "phys", s->phys);
     }
     return s->phys;
 }
 
 gfx_world *scene_gfx(scene *s) {
     if (!s->gfx) {
-        s->gfx = make_gfx(s, 0);
-        for (uint32_t i = 0; s->gfx && i < s->setting_count; i++) {
-            if (strcmp(s->setting[i].room, "gfx") == 0) {
-                gfx_world_set(s->gfx, s->setting[i].name, s->setting[i].value);
-            }
-        }
+        gfx_world_desc desc = gfx_world_desc_default();
+        desc.jobs = s->jobs;
+        desc.metrics = s->metrics;
+        s->gfx = gfx_world_create(&desc);
+        scene_settings_apply(s, "gfx", s->gfx);
     }
     return s->gfx;
 }
@@ -157,65 +135,6 @@ core_vfs *scene_vfs(const scene *s) { return s->vfs; }
 
 core_rng *scene_rng(scene *s, uint64_t stream) {
     return stream == CORE_RNG_VIEW ? &s->view_rng : &s->clock.sim[0];
-}
-
-// A setting for a room that does not exist yet is tried on a small world that is thrown away, so
-// that a wrong name is an error where it was written and not when the room is made.
-static bool try_setting(const scene *s, const char *room, const char *name, const char *value) {
-    bool ok;
-    if (strcmp(room, "phys") == 0) {
-        phys_world *world = s->phys ? s->phys : make_phys(s, 64);
-        ok = world && phys_world_set(world, name, value);
-        if (world != s->phys) {
-            phys_world_destroy(world);
-        }
-    } else if (strcmp(room, "anim") == 0) {
-        ok = anim_world_set(s->anim, name, value);
-    } else {
-        gfx_world *world = s->gfx ? s->gfx : make_gfx(s, 64);
-        ok = world && gfx_world_set(world, name, value);
-        if (world != s->gfx) {
-            gfx_world_destroy(world);
-        }
-    }
-    return ok;
-}
-
-bool scene_setting(scene *s, const char *name, const char *value) {
-    scene_kept_setting kept = {0};
-    const char *dot = strchr(name, '.');
-    size_t room_length = dot ? (size_t)(dot - name) : 0;
-    if (!dot || room_length >= sizeof kept.room || strlen(dot + 1) >= sizeof kept.name ||
-        strlen(value) >= sizeof kept.value) {
-        return core_fail("setting '%s=%s': expected ROOM.NAME=VALUE, as phys.solver=soft", name,
-                         value);
-    }
-    memcpy(kept.room, name, room_length);
-    strcpy(kept.name, dot + 1);
-    strcpy(kept.value, value);
-    if (strcmp(kept.room, "phys") != 0 && strcmp(kept.room, "gfx") != 0) {
-        return core_fail(
-            "setting '%s': no settings for '%s'; rooms with settings are phys, gfx and anim", name,
-            kept.room);
-    }
-    if (!try_setting(s, kept.room, kept.name, kept.value)) {
-        return false;
-    }
-    if (!s->setting) {
-        s->setting = core_alloc(sizeof *s->setting * SCENE_MAX_SETTINGS);
-    }
-    for (uint32_t i = 0; i < s->setting_count; i++) {
-        scene_kept_setting *old = &s->setting[i];
-        if (strcmp(old->room, kept.room) == 0 && strcmp(old->name, kept.name) == 0) {
-            *old = kept;
-            return true;
-        }
-    }
-    if (s->setting_count == SCENE_MAX_SETTINGS) {
-        return core_fail("setting '%s': more than %d different settings", name, SCENE_MAX_SETTINGS);
-    }
-    s->setting[s->setting_count++] = kept;
-    return true;
 }
 
 // ---- the step ----
@@ -244,6 +163,7 @@ bool scene_step(scene *s) {
         core_stage_end(s->metrics, CORE_STAGE_SCRIPT);
     }
     scene_anim_pose(s);
+    scene_audio_step(s);
     s->clock.step[0]++;
     return ok;
 }
@@ -268,6 +188,10 @@ int scene_state(const scene *s, const core_columns **out, int capacity) {
     if (s->anim) {
         int room = capacity > count ? capacity - count : 0;
         count += anim_world_state(s->anim, out && room ? out + count : NULL, room);
+    }
+    if (s->audio) {
+        int room = capacity > count ? capacity - count : 0;
+        count += audio_world_state(s->audio, out && room ? out + count : NULL, room);
     }
     return count;
 }
@@ -323,6 +247,9 @@ void scene_counts(const scene *s) {
     if (s->anim) {
         anim_world_counts(s->anim, s->metrics);
     }
+    if (s->audio) {
+        audio_world_counts(s->audio, s->metrics);
+    }
 }
 
 scene_memory scene_memory_use(const scene *s) {
@@ -333,6 +260,7 @@ scene_memory scene_memory_use(const scene *s) {
              (s->setting ? sizeof *s->setting * SCENE_MAX_SETTINGS : 0);
     m.phys = s->phys ? phys_world_bytes(s->phys) : 0;
     m.gfx = s->gfx ? gfx_world_bytes(s->gfx) : 0;
+    m.audio = s->audio ? audio_world_bytes(s->audio) : 0;
     m.anim = s->anim ? anim_world_bytes(s->anim) : 0;
     return m;
 }

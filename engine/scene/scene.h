@@ -4,6 +4,7 @@
 #define SCENE_SCENE_H
 
 #include "anim/anim.h"
+#include "audio/audio.h"
 #include "core/columns.h"
 #include "core/jobs.h"
 #include "core/metrics.h"
@@ -49,6 +50,8 @@ gfx_world *scene_gfx(scene *s);
 gfx_world *scene_gfx_if(const scene *s);
 anim_world *scene_anim(scene *s);
 anim_world *scene_anim_if(const scene *s);
+audio_world *scene_audio(scene *s);
+audio_world *scene_audio_if(const scene *s);
 core_metrics *scene_metrics(const scene *s);
 core_vfs *scene_vfs(const scene *s);
 core_rng *scene_rng(scene *s, uint64_t stream); // CORE_RNG_SIM, CORE_RNG_VIEW
@@ -77,6 +80,17 @@ uint32_t scene_model_clip_count(const scene *s, scene_model model);
 anim_clip scene_model_clip(const scene *s, scene_model model, uint32_t i);
 // By name; null + core_fail naming the nearest.
 anim_clip scene_model_find_clip(const scene *s, scene_model model, const char *name);
+
+// ---- sound ----
+// Reads a WAV file; the same path gives the same sound again. Null + core_fail.
+audio_sound scene_sound_load(scene *s, const char *path);
+// The source follows the entity from now on (position, and velocity for Doppler), is destroyed with
+// it, and takes the place of the one it had.
+bool scene_set_sound(scene *s, scene_entity e, audio_source source);
+// Who hears: an entity (its -Z looks ahead), or the camera when null (so it is at the start).
+bool scene_set_listener(scene *s, scene_entity e);
+// A fixed place instead.
+void scene_place_listener(scene *s, const audio_listener *listener);
 
 typedef struct scene_spawn_desc {
     core_vec3 position; // m; relative to the parent

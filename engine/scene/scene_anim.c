@@ -7,6 +7,7 @@ anim_world *scene_anim(scene *s) {
         desc.jobs = s->jobs;
         desc.metrics = s->metrics;
         s->anim = anim_world_create(&desc);
+        scene_settings_apply(s, "anim", s->anim);
     }
     return s->anim;
 }

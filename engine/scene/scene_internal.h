@@ -25,8 +25,9 @@
     X(uint32_t, depth, CORE_COLUMN_STATE)                                                          \
     X(core_handle, body, CORE_COLUMN_STATE)                                                        \
     X(core_handle, name, CORE_COLUMN_STATE)                                                        \
-    X(core_handle, anim, CORE_COLUMN_STATE) /* owned */                                            \
-    X(core_handle, skin, 0)                 /* whose palette its mesh follows */                   \
+    X(core_handle, anim, CORE_COLUMN_STATE)   /* owned */                                          \
+    X(core_handle, source, CORE_COLUMN_STATE) /* of sound, owned */                                \
+    X(core_handle, skin, 0)                   /* whose palette its mesh follows */                 \
     X(float, wpx, 0)                                                                               \
     X(float, wpy, 0)                                                                               \
     X(float, wpz, 0)                                                                               \
@@ -70,6 +71,7 @@ typedef struct scene_kept_setting { // given before its room was made
 #define SCENE_MAX_SETTINGS 128
 
 typedef struct scene_models scene_models;
+typedef struct scene_sounds scene_sounds;
 
 struct scene {
     core_jobs *jobs;
@@ -85,6 +87,11 @@ struct scene {
     phys_world *phys;
     gfx_world *gfx;
     anim_world *anim;
+    audio_world *audio;
+    scene_sounds *sounds;  // made with the first one
+    scene_entity listener; // null: the camera, unless listener_placed
+    bool listener_placed;
+    bool sounding;               // some entity has, or had, a source
     scene_models *models;        // made with the first one
     scene_kept_setting *setting; // [SCENE_MAX_SETTINGS], made with the first one
     uint32_t setting_count;
@@ -96,6 +103,8 @@ struct scene {
 };
 
 uint32_t scene_row(const scene *s, scene_entity e); // CORE_NO_ROW + core_fail when stale
+// scene_settings.c: gives a room that was just made what was set for it before
+void scene_settings_apply(const scene *s, const char *room, void *world);
 // scene_hierarchy.c
 void scene_link(scene *s, uint32_t row, scene_entity parent);
 void scene_unlink(scene *s, uint32_t row);
@@ -110,6 +119,10 @@ void scene_anim_pose(scene *s);   // palettes, after physics
 void scene_anim_sync(scene *s);   // palettes into gfx
 void scene_anim_leave(scene *s, uint32_t row);
 bool scene_add_model(scene *s, uint32_t row, const scene_spawn_desc *d);
+// scene_audio.c
+void scene_audio_step(scene *s);
+void scene_audio_leave(scene *s, uint32_t row);
+void scene_audio_destroy(scene *s);
 // scene_model.c
 void scene_models_destroy(scene *s);
 typedef struct scene_model_view {

@@ -2,7 +2,12 @@
 #include "script/bind.h"
 
 extern const bind_room bind_core_room, bind_scene_room, bind_phys_room, bind_gfx_room,
-    bind_anim_room;
+    bind_anim_room, bind_audio_room;
 
-const bind_room *const bind_rooms[] = {&bind_core_room, &bind_scene_room, &bind_phys_room,
-                                       &bind_gfx_room,  &bind_anim_room,  NULL};
+const bind_room *const bind_rooms[] = {&bind_core_room,
+                                       &bind_scene_room,
+                                       &bind_phys_room,
+                                       &bind_gfx_room,
+                                       &bind_anim_room,
+                                       &bind_audio_room,
+                                       NULL};
