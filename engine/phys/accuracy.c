@@ -8,6 +8,7 @@ typedef struct v3 {
 typedef struct solid {
     v3 p, axis[3], half;   // axis: unit, world
     double radius, lo, hi; // lo, hi: extent along x
+    const phys_geom_hull *hull;
     uint32_t body, type;
     bool fixed;
 } solid;
@@ -28,6 +29,28 @@ static v3 turn(core_quat q, v3 v) {
     return (v3){v.x + w * c.x + 2 * cc.x, v.y + w * c.y + 2 * cc.y, v.z + w * c.z + 2 * cc.z};
 }
 
+// How far a shape reaches along a unit direction from its position.
+static double support(const solid *s, v3 n) {
+    v3 l = {dot(n, s->axis[0]), dot(n, s->axis[1]), dot(n, s->axis[2])};
+    double far = -1e300;
+    switch (s->type) {
+    case PHYS_SPHERE:
+        return s->radius;
+    case PHYS_BOX:
+        return mag(l.x) * s->half.x + mag(l.y) * s->half.y + mag(l.z) * s->half.z;
+    case PHYS_CAPSULE:
+        return mag(l.y) * s->half.y + s->radius;
+    case PHYS_CYLINDER:
+        return mag(l.y) * s->half.y + s->radius * core_sqrt(l.x * l.x + l.z * l.z);
+    default:
+        for (uint32_t i = 0; i < s->hull->vertex_count; i++) {
+            core_vec3 v = s->hull->vertex[i];
+            far = CORE_MAX(far, l.x * v.x + l.y * v.y + l.z * v.z);
+        }
+        return far;
+    }
+}
+
 static solid make_solid(const phys_world *w, uint32_t i) {
     const phys_shapes *s = &w->shapes;
     const phys_bodies *b = &w->bodies;
@@ -43,12 +66,13 @@ static solid make_solid(const phys_world *w, uint32_t i) {
     o.axis[0] = turn(q, turn(l, (v3){1, 0, 0}));
     o.axis[1] = turn(q, turn(l, (v3){0, 1, 0}));
     o.axis[2] = turn(q, turn(l, (v3){0, 0, 1}));
-    double e = o.radius;
-    if (o.type == PHYS_BOX) {
-        e = mag(o.axis[0].x) * o.half.x + mag(o.axis[1].x) * o.half.y + mag(o.axis[2].x) * o.half.z;
-    } else if (o.type == PHYS_PLANE) {
-        e = 1e30;
+    o.hull = s->hull[i] ? &w->hulls[s->hull[i] - 1].hull : NULL;
+    if (o.type == PHYS_PLANE) {
+        o.lo = -1e30;
+        o.hi = 1e30;
+        return o;
     }
+    double e = CORE_MAX(support(&o, (v3){1, 0, 0}), support(&o, (v3){-1, 0, 0}));
     o.lo = o.p.x - e;
     o.hi = o.p.x + e;
     return o;
@@ -70,28 +94,78 @@ static double depth_sphere_box(const solid *s, const solid *b) {
     return s->radius + CORE_MIN(gx, CORE_MIN(gy, gz));
 }
 
-static double reach(const solid *b, v3 n) {
-    return mag(dot(b->axis[0], n)) * b->half.x + mag(dot(b->axis[1], n)) * b->half.y +
-           mag(dot(b->axis[2], n)) * b->half.z;
+// Overlap along an axis from a to b; `least` keeps the smallest. False: they are apart.
+static bool try_axis(const solid *a, const solid *b, v3 n, double *least) {
+    double l = len(n);
+    if (l < 1e-8) {
+        return true;
+    }
+    n = (v3){n.x / l, n.y / l, n.z / l};
+    v3 back = {-n.x, -n.y, -n.z};
+    double d = dot(sub(b->p, a->p), n);
+    double forward = support(a, n) + support(b, back) - d;
+    double backward = support(a, back) + support(b, n) + d;
+    *least = CORE_MIN(*least, CORE_MIN(forward, backward));
+    return *least > 0;
 }
 
-static double depth_box_box(const solid *a, const solid *b) {
-    v3 d = sub(b->p, a->p);
+static uint32_t direction_count(const solid *s, bool faces) {
+    switch (s->type) {
+    case PHYS_BOX:
+        return 3;
+    case PHYS_CYLINDER:
+        return 1;
+    case PHYS_CAPSULE:
+        return faces ? 0 : 1;
+    case PHYS_HULL:
+        return faces ? s->hull->face_count : s->hull->loop_count;
+    default:
+        return 0;
+    }
+}
+
+// Direction i of the faces, or of the edges.
+static v3 direction(const solid *s, uint32_t i, bool faces) {
+    if (s->type != PHYS_HULL) {
+        return s->type == PHYS_BOX ? s->axis[i] : s->axis[1];
+    }
+    core_vec3 l = faces ? s->hull->normal[i] : core_v3(0, 0, 0);
+    if (!faces) { // edge i of the loops; each edge is met twice, once a side
+        uint32_t f = 0;
+        while (i >= s->hull->face_begin[f + 1]) {
+            f++;
+        }
+        uint32_t next = i + 1 == s->hull->face_begin[f + 1] ? s->hull->face_begin[f] : i + 1;
+        core_vec3 p = s->hull->vertex[s->hull->loop[i]], q = s->hull->vertex[s->hull->loop[next]];
+        l = s->hull->loop[i] < s->hull->loop[next] ? core_v3_sub(q, p) : core_v3(0, 0, 0);
+    }
+    v3 x = s->axis[0], y = s->axis[1], z = s->axis[2];
+    return (v3){x.x * l.x + y.x * l.y + z.x * l.z, x.y * l.x + y.y * l.y + z.y * l.z,
+                x.z * l.x + y.z * l.y + z.z * l.z};
+}
+
+// Separating axes: face normals, edge pairs, and the line of centres for round shapes. Exact for
+// boxes and hulls; for capsules and cylinders an upper bound of the overlap.
+static double depth_axes(const solid *a, const solid *b) {
     double least = 1e300;
-    for (int k = 0; k < 15; k++) {
-        v3 n = k < 3   ? a->axis[k]
-               : k < 6 ? b->axis[k - 3]
-                       : cross(a->axis[(k - 6) / 3], b->axis[k % 3]);
-        double l = len(n);
-        if (l < 1e-8) {
-            continue;
+    if (!try_axis(a, b, sub(b->p, a->p), &least)) {
+        return least;
+    }
+    for (int side = 0; side < 2; side++) {
+        const solid *s = side ? b : a;
+        for (uint32_t i = 0; i < direction_count(s, true); i++) {
+            if (!try_axis(a, b, direction(s, i, true), &least)) {
+                return least;
+            }
         }
-        n = (v3){n.x / l, n.y / l, n.z / l};
-        double overlap = reach(a, n) + reach(b, n) - mag(dot(d, n));
-        if (overlap <= 0) {
-            return overlap;
+    }
+    for (uint32_t i = 0; i < direction_count(a, false); i++) {
+        v3 u = direction(a, i, false);
+        for (uint32_t j = 0; j < direction_count(b, false) && dot(u, u) > 0; j++) {
+            if (!try_axis(a, b, cross(u, direction(b, j, false)), &least)) {
+                return least;
+            }
         }
-        least = CORE_MIN(least, overlap);
     }
     return least;
 }
@@ -103,17 +177,18 @@ static double depth(const solid *a, const solid *b) {
         a = b;
         b = t;
     }
-    if (b->type == PHYS_PLANE) {
-        double extent = a->type == PHYS_BOX ? reach(a, b->axis[1]) : a->radius;
-        return extent - dot(sub(a->p, b->p), b->axis[1]);
+    if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
+        const solid *plane = a->type == PHYS_PLANE ? a : b, *s = plane == a ? b : a;
+        v3 down = {-plane->axis[1].x, -plane->axis[1].y, -plane->axis[1].z};
+        return support(s, down) - dot(sub(s->p, plane->p), plane->axis[1]);
     }
     if (a->type == PHYS_SPHERE && b->type == PHYS_SPHERE) {
         return a->radius + b->radius - len(sub(a->p, b->p));
     }
-    if (a->type == PHYS_SPHERE) {
+    if (a->type == PHYS_SPHERE && b->type == PHYS_BOX) {
         return depth_sphere_box(a, b);
     }
-    return depth_box_box(a, b);
+    return depth_axes(a, b);
 }
 
 static void sort_by_low(solid **s, solid **tmp, uint32_t n) {

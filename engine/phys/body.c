@@ -69,7 +69,10 @@ static void shift_inertia(phys_mat3 *i, float m, core_vec3 d) {
 static bool set_mass(phys_bodies *b, uint32_t row, const phys_shape_desc *shapes, uint32_t count) {
     phys_mass total = {0};
     for (uint32_t i = 0; i < count; i++) {
-        phys_mass m = phys_shape_mass(&shapes[i]);
+        phys_mass m;
+        if (!phys_shape_mass(&shapes[i], &m)) {
+            return false;
+        }
         total.mass += m.mass;
         total.center = core_v3_mad(total.center, m.center, m.mass);
     }
@@ -79,7 +82,8 @@ static bool set_mass(phys_bodies *b, uint32_t row, const phys_shape_desc *shapes
     }
     total.center = core_v3_scale(total.center, 1.0f / total.mass);
     for (uint32_t i = 0; i < count; i++) {
-        phys_mass m = phys_shape_mass(&shapes[i]);
+        phys_mass m;
+        phys_shape_mass(&shapes[i], &m);
         shift_inertia(&m.inertia, m.mass, core_v3_sub(m.center, total.center));
         total.inertia.x = core_v3_add(total.inertia.x, m.inertia.x);
         total.inertia.y = core_v3_add(total.inertia.y, m.inertia.y);
@@ -104,7 +108,7 @@ static bool set_mass(phys_bodies *b, uint32_t row, const phys_shape_desc *shapes
 }
 
 static void add_shape(phys_world *w, uint32_t body_slot, uint32_t body_row,
-                      const phys_shape_desc *d) {
+                      const phys_shape_desc *d, uint32_t hull) {
     phys_shapes *s = &w->shapes;
     core_handle h = core_columns_add(&s->set);
     uint32_t i = core_columns_count(&s->set) - 1;
@@ -113,8 +117,17 @@ static void add_shape(phys_world *w, uint32_t body_slot, uint32_t body_row,
     s->next[i] = w->bodies.shape[body_row];
     w->bodies.shape[body_row] = h.index;
     s->type[i] = d->type;
-    s->half[i] = d->half;
-    s->radius[i] = d->type == PHYS_SPHERE ? d->radius : 0.0f;
+    bool round = d->type == PHYS_SPHERE || d->type == PHYS_CAPSULE || d->type == PHYS_CYLINDER;
+    bool tall = d->type == PHYS_CAPSULE || d->type == PHYS_CYLINDER;
+    s->hull[i] = hull;
+    s->half[i] = tall ? core_v3(0, d->half_height, 0) : d->half;
+    s->radius[i] = round ? d->radius : 0.0f;
+    if (hull != 0) {
+        const phys_geom_hull *made = &w->hulls[hull - 1].hull;
+        core_aabb box = phys_geom_bounds_convex(made->vertex, made->vertex_count, core_v3(0, 0, 0),
+                                                core_quat_identity());
+        s->half[i] = core_v3_scale(core_v3_sub(box.max, box.min), 0.5f);
+    }
     s->position[i] = d->position;
     s->rotation[i] = core_quat_normalize(d->rotation);
     if (d->type == PHYS_PLANE) { // a plane's axis is its y
@@ -125,6 +138,12 @@ static void add_shape(phys_world *w, uint32_t body_slot, uint32_t body_row,
     }
     s->friction[i] = d->friction;
     s->restitution[i] = d->restitution;
+}
+
+static void leave_hulls(phys_world *w, const uint32_t *hull, uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) {
+        phys_hull_leave(w, hull[k]);
+    }
 }
 
 phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_shape_desc *shapes,
@@ -138,14 +157,28 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
                   w->shapes.set.pool.capacity);
         return CORE_NULL_HANDLE;
     }
+    size_t mark = core_arena_mark(&w->scratch);
+    uint32_t *hull = CORE_ARENA_ARRAY(&w->scratch, uint32_t, count);
+    for (uint32_t k = 0; k < count; k++) {
+        hull[k] = shapes[k].type == PHYS_HULL ? phys_hull_share(w, &shapes[k]) : 0;
+        if (shapes[k].type == PHYS_HULL && hull[k] == 0) {
+            leave_hulls(w, hull, k);
+            core_arena_rewind(&w->scratch, mark);
+            return CORE_NULL_HANDLE;
+        }
+    }
     core_handle h = core_columns_add(&b->set);
     if (core_handle_is_null(h)) {
+        leave_hulls(w, hull, count);
+        core_arena_rewind(&w->scratch, mark);
         return h;
     }
     uint32_t i = core_columns_count(&b->set) - 1;
     b->iq[i] = core_quat_identity();
     if (d->type == PHYS_DYNAMIC && !set_mass(b, i, shapes, count)) {
         core_columns_remove(&b->set, h, NULL, NULL);
+        leave_hulls(w, hull, count);
+        core_arena_rewind(&w->scratch, mark);
         return CORE_NULL_HANDLE;
     }
     core_quat q = core_quat_normalize(d->rotation);
@@ -168,8 +201,9 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     b->flags[i] |= d->contact_events ? PHYS_BODY_EVENTS : 0u;
     b->seen[i] = phys_get3(b->cx, b->cy, b->cz, i);
     for (uint32_t k = count; k-- > 0;) {
-        add_shape(w, h.index, i, &shapes[k]);
+        add_shape(w, h.index, i, &shapes[k], hull[k]);
     }
+    core_arena_rewind(&w->scratch, mark);
     w->measured = false;
     return h;
 }
@@ -183,6 +217,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
     for (uint32_t slot = w->bodies.shape[row]; slot != 0;) {
         uint32_t i = phys_slot_row(&w->shapes.set, slot), next = w->shapes.next[i];
         phys_pairs_drop_shape(w, slot);
+        phys_hull_leave(w, w->shapes.hull[i]);
         core_columns_remove(&w->shapes.set, core_columns_handle(&w->shapes.set, i), NULL, NULL);
         slot = next;
     }

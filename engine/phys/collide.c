@@ -63,38 +63,30 @@ static void sphere_plane(const phys_geom *a, const phys_geom *b, float margin, p
     }
 }
 
-// The four corners of the box that reach deepest: those of the face turned most to the plane.
-static void box_plane(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *m) {
-    core_vec3 up = phys_mat_col(&b->axes, 1);
-    core_vec3 local = phys_mat_tmul(&a->axes, up);
-    core_vec3 size = phys_abs3(local);
-    int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-    m->normal = core_v3_scale(up, -1.0f);
-    for (uint32_t i = 0; i < 8; i++) {
-        core_vec3 c = core_v3(i & 1 ? a->half.x : -a->half.x, i & 2 ? a->half.y : -a->half.y,
-                              i & 4 ? a->half.z : -a->half.z);
-        if (phys_comp(c, axis) * phys_comp(local, axis) > 0.0f) {
-            continue;
-        }
-        core_vec3 p = core_v3_add(a->position, phys_mat_mul(&a->axes, c));
-        float sep = core_v3_dot(core_v3_sub(p, b->position), up);
-        if (sep < margin) {
-            core_vec3 mid = core_v3_mad(p, up, -0.5f * sep);
-            m->point[m->count++] =
-                (phys_point){.ra = mid, .rb = mid, .separation = sep, .feature = i};
-        }
-    }
-}
-
 typedef void collide_fn(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *m);
 
+// a.type <= b.type. The rest of the table goes through GJK.
 void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out) {
-    static collide_fn *const table[3][3] = {{sphere_sphere, sphere_box, sphere_plane},
-                                            {NULL, phys_collide_box_box, box_plane},
-                                            {NULL, NULL, NULL}};
     out->count = 0;
-    collide_fn *fn = table[a->type][b->type];
-    if (fn != NULL) {
-        fn(a, b, margin, out);
+    bool swap = a->type > b->type;
+    const phys_geom *first = swap ? b : a, *second = swap ? a : b;
+    collide_fn *fn = phys_collide_convex;
+    if (second->type == PHYS_PLANE || first->type == PHYS_PLANE) {
+        bool plane_first = first->type == PHYS_PLANE;
+        swap = swap != plane_first;
+        const phys_geom *shape = plane_first ? second : first;
+        const phys_geom *plane = plane_first ? first : second;
+        fn = shape->type == PHYS_SPHERE ? sphere_plane : phys_collide_plane;
+        fn(shape, plane, margin, out);
+    } else {
+        if (second->type == PHYS_SPHERE) {
+            fn = sphere_sphere;
+        } else if (second->type == PHYS_BOX) {
+            fn = first->type == PHYS_SPHERE ? sphere_box : phys_collide_box_box;
+        }
+        fn(first, second, margin, out);
+    }
+    if (swap) {
+        out->normal = core_v3_scale(out->normal, -1.0f);
     }
 }

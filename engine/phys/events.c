@@ -44,8 +44,14 @@ bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, f
         return (radius > 0.0f && radius <= PHYS_FAR) ||
                core_fail("phys %s: radius is %g, expected more than 0 m", what, (double)radius);
     }
+    if (type == PHYS_CAPSULE || type == PHYS_CYLINDER) {
+        return (radius > 0.0f && radius <= PHYS_FAR && half.y > 0.0f && half.y <= PHYS_FAR) ||
+               core_fail("phys %s: radius %g and half height %g, expected more than 0 m", what,
+                         (double)radius, (double)half.y);
+    }
     if (type != PHYS_BOX) {
-        return core_fail("phys %s: shape %d, expected sphere or box", what, (int)type);
+        return core_fail("phys %s: shape %d, expected sphere, box, capsule or cylinder", what,
+                         (int)type);
     }
     float low = CORE_MIN(half.x, CORE_MIN(half.y, half.z));
     return (low > 0.0f && phys_finite3(half)) ||
@@ -71,7 +77,7 @@ phys_trigger phys_trigger_create(phys_world *w, const phys_trigger_desc *d) {
     t->position[i] = d->position;
     t->rotation[i] = core_quat_normalize(d->rotation);
     t->half[i] = d->half;
-    t->radius[i] = d->type == PHYS_SPHERE ? d->radius : 0.0f;
+    t->radius[i] = d->type == PHYS_BOX ? 0.0f : d->radius;
     t->layers[i] = d->layers ? d->layers : UINT32_MAX;
     t->user[i] = d->user;
     return h;
@@ -134,8 +140,7 @@ static bool visit_same(const visit *a, const visit *b) {
 
 static bool overlaps(const phys_geom *region, const phys_geom *shape) {
     phys_manifold m;
-    bool swap = region->type > shape->type;
-    phys_collide(swap ? shape : region, swap ? region : shape, 0.0f, &m);
+    phys_collide(region, shape, 0.0f, &m);
     return m.count != 0;
 }
 

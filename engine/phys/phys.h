@@ -122,9 +122,9 @@ uint32_t phys_body_layer(const phys_world *world, phys_body body); // 0 when sta
 
 // Regions that report the dynamic and kinematic bodies inside them and push nothing.
 typedef struct phys_trigger_desc {
-    phys_shape_type type; // sphere or box
-    core_vec3 half;       // box: half extents (m)
-    float radius;         // sphere (m)
+    phys_shape_type type; // sphere, box, capsule or cylinder
+    core_vec3 half;       // box: half extents (m); capsule, cylinder: y is the half height
+    float radius;         // sphere, capsule, cylinder (m)
     core_vec3 position;
     core_quat rotation;
     uint32_t layers; // bit per body layer that is seen; 0: all

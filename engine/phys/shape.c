@@ -43,8 +43,9 @@ bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {
     if (s->cookie != PHYS_SHAPE_COOKIE) {
         return core_fail("phys shape: description was not made by phys_shape_desc_default");
     }
-    if ((unsigned)s->type > PHYS_PLANE) {
-        return core_fail("phys shape: type %d is unknown here, expected sphere, box or plane",
+    if ((unsigned)s->type > PHYS_HULL) {
+        return core_fail("phys shape: type %d, expected sphere, box, plane, capsule, cylinder or "
+                         "hull",
                          (int)s->type);
     }
     const char *name = shape_names[s->type];
@@ -64,6 +65,19 @@ bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {
             return false;
         }
         break;
+    case PHYS_CAPSULE:
+    case PHYS_CYLINDER:
+        if (!check_size(name, "radius", s->radius) ||
+            !check_size(name, "half_height", s->half_height)) {
+            return false;
+        }
+        break;
+    case PHYS_HULL:
+        if (s->points == NULL || s->point_count < 4 || s->point_count > PHYS_HULL_POINTS) {
+            return core_fail("phys shape hull: %u points, expected 4..%u", s->point_count,
+                             PHYS_HULL_POINTS);
+        }
+        break;
     default:
         if (!(core_absf(core_v3_length(s->normal) - 1.0f) < 1e-3f)) {
             return core_fail("phys shape plane: normal (%g, %g, %g) is not of length 1",
@@ -76,40 +90,68 @@ bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {
     return check_material(s, name);
 }
 
-static phys_mass mass_about_center(const phys_shape_desc *s) {
-    float density = s->density > 0.0f ? s->density : 1000.0f;
-    phys_mass m = {0};
-    if (s->type == PHYS_SPHERE) {
-        m.mass = density * (4.0f / 3.0f) * CORE_PI_F * s->radius * s->radius * s->radius;
-        float i = 0.4f * m.mass * s->radius * s->radius;
-        m.inertia = (phys_mat3){{i, 0, 0}, {0, i, 0}, {0, 0, i}};
-    } else if (s->type == PHYS_BOX) {
-        core_vec3 h = s->half;
-        m.mass = density * 8.0f * h.x * h.y * h.z;
-        float k = m.mass / 3.0f;
-        m.inertia = (phys_mat3){{k * (h.y * h.y + h.z * h.z), 0, 0},
-                                {0, k * (h.x * h.x + h.z * h.z), 0},
-                                {0, 0, k * (h.x * h.x + h.y * h.y)}};
-    }
-    return m;
+static phys_mat3 inertia_matrix(phys_geom_inertia i, float mass) {
+    return (phys_mat3){{i.xx * mass, i.xy * mass, i.xz * mass},
+                       {i.xy * mass, i.yy * mass, i.yz * mass},
+                       {i.xz * mass, i.yz * mass, i.zz * mass}};
 }
 
-phys_mass phys_shape_mass(const phys_shape_desc *s) {
-    phys_mass m = mass_about_center(s);
-    phys_mat3 r = phys_quat_mat(core_quat_normalize(s->rotation));
+// In the shape's own frame.
+static bool own_mass(const phys_shape_desc *s, phys_mass *m) {
+    float density = s->density > 0.0f ? s->density : 1000.0f;
+    *m = (phys_mass){0};
+    phys_geom_inertia i = {0};
+    switch (s->type) {
+    case PHYS_SPHERE:
+        m->mass = density * phys_geom_volume_sphere(s->radius);
+        i = phys_geom_inertia_sphere(s->radius);
+        break;
+    case PHYS_BOX:
+        m->mass = density * phys_geom_volume_box(s->half);
+        i = phys_geom_inertia_box(s->half);
+        break;
+    case PHYS_CAPSULE:
+        m->mass = density * phys_geom_volume_capsule(s->half_height, s->radius);
+        i = phys_geom_inertia_capsule(s->half_height, s->radius);
+        break;
+    case PHYS_CYLINDER:
+        m->mass = density * phys_geom_volume_cylinder(s->half_height, s->radius);
+        i = phys_geom_inertia_cylinder(s->half_height, s->radius);
+        break;
+    case PHYS_HULL: {
+        const core_vec3 *p = (const core_vec3 *)(const void *)s->points;
+        float volume = phys_geom_volume_convex(p, s->point_count);
+        m->mass = density * volume;
+        if (volume == 0.0f || !phys_geom_inertia_convex(p, s->point_count, &i, &m->center)) {
+            return false;
+        }
+        break;
+    }
+    default:
+        break;
+    }
+    m->inertia = inertia_matrix(i, m->mass);
+    return true;
+}
+
+bool phys_shape_mass(const phys_shape_desc *s, phys_mass *m) {
+    if (!own_mass(s, m)) {
+        return false;
+    }
+    core_quat q = core_quat_normalize(s->rotation);
+    phys_mat3 r = phys_quat_mat(q);
     // R I R^T, row by row.
-    const core_vec3 *row = &r.x, *in = &m.inertia.x;
+    const core_vec3 *row = &r.x, *in = &m->inertia.x;
     phys_mat3 out;
     core_vec3 *o = &out.x;
     for (int i = 0; i < 3; i++) {
-        core_vec3 t = core_v3_add(
-            core_v3_scale(in[0], row[i].x),
-            core_v3_add(core_v3_scale(in[1], row[i].y), core_v3_scale(in[2], row[i].z)));
+        core_vec3 t = core_v3_scale(in[0], row[i].x);
+        t = core_v3_mad(core_v3_mad(t, in[1], row[i].y), in[2], row[i].z);
         o[i] = core_v3(core_v3_dot(t, r.x), core_v3_dot(t, r.y), core_v3_dot(t, r.z));
     }
-    m.inertia = out;
-    m.center = s->position;
-    return m;
+    m->inertia = out;
+    m->center = core_v3_add(s->position, phys_rotate(q, m->center));
+    return true;
 }
 
 // Cyclic Jacobi (Golub, Van Loan, Matrix Computations, 8.5) on doubles.
@@ -163,6 +205,7 @@ phys_geom phys_geom_make(phys_shape_type type, core_vec3 position, core_quat rot
                          core_vec3 half, float radius) {
     phys_geom g = {
         .type = type, .position = position, .rotation = rotation, .half = half, .radius = radius};
+    g.half_height = half.y;
     g.axes = phys_quat_mat(rotation);
     return g;
 }
@@ -173,9 +216,11 @@ phys_geom phys_shape_geom(const phys_world *w, uint32_t i) {
     uint32_t row = phys_slot_row(&b->set, s->body[i]);
     core_quat q = phys_body_quat(b, row);
     core_vec3 o = phys_get3(b->px, b->py, b->pz, row);
-    return phys_geom_make((phys_shape_type)s->type[i],
-                          core_v3_add(o, phys_rotate(q, s->position[i])),
-                          phys_quat_mul(q, s->rotation[i]), s->half[i], s->radius[i]);
+    phys_geom g =
+        phys_geom_make((phys_shape_type)s->type[i], core_v3_add(o, phys_rotate(q, s->position[i])),
+                       phys_quat_mul(q, s->rotation[i]), s->half[i], s->radius[i]);
+    g.hull = s->hull[i] ? &w->hulls[s->hull[i] - 1].hull : NULL;
+    return g;
 }
 
 bool phys_geom_contains(const phys_geom *g, core_vec3 point) {
@@ -184,17 +229,41 @@ bool phys_geom_contains(const phys_geom *g, core_vec3 point) {
         return core_v3_dot(d, d) <= g->radius * g->radius;
     }
     core_vec3 l = phys_abs3(phys_mat_tmul(&g->axes, d));
+    if (g->type == PHYS_CYLINDER) {
+        return l.y <= g->half_height && l.x * l.x + l.z * l.z <= g->radius * g->radius;
+    }
+    if (g->type == PHYS_CAPSULE) {
+        float y = CORE_MAX(l.y - g->half_height, 0.0f);
+        return l.x * l.x + y * y + l.z * l.z <= g->radius * g->radius;
+    }
     return l.x <= g->half.x && l.y <= g->half.y && l.z <= g->half.z;
 }
 
 core_aabb phys_geom_bounds(const phys_geom *g) {
     core_vec3 e = core_v3(g->radius, g->radius, g->radius);
-    if (g->type == PHYS_BOX) {
+    core_vec3 up = phys_abs3(phys_mat_col(&g->axes, 1));
+    switch (g->type) {
+    case PHYS_BOX:
         e = core_v3(core_v3_dot(phys_abs3(g->axes.x), g->half),
                     core_v3_dot(phys_abs3(g->axes.y), g->half),
                     core_v3_dot(phys_abs3(g->axes.z), g->half));
-    } else if (g->type == PHYS_PLANE) {
+        break;
+    case PHYS_PLANE:
         e = core_v3(1e9f, 1e9f, 1e9f);
+        break;
+    case PHYS_CAPSULE:
+        e = core_v3_mad(e, up, g->half_height);
+        break;
+    case PHYS_CYLINDER:
+        e = core_v3(up.x * g->half_height + g->radius * core_sqrtf(CORE_MAX(1 - up.x * up.x, 0)),
+                    up.y * g->half_height + g->radius * core_sqrtf(CORE_MAX(1 - up.y * up.y, 0)),
+                    up.z * g->half_height + g->radius * core_sqrtf(CORE_MAX(1 - up.z * up.z, 0)));
+        break;
+    case PHYS_HULL:
+        return phys_geom_bounds_convex(g->hull->vertex, g->hull->vertex_count, g->position,
+                                       g->rotation);
+    default:
+        break;
     }
     return (core_aabb){core_v3_sub(g->position, e), core_v3_add(g->position, e)};
 }

@@ -115,6 +115,7 @@ void phys_world_destroy(phys_world *w) {
     core_columns_release(&w->fields.set);
     core_arena_release(&w->scratch);
     phys_pairs_release(w);
+    phys_hulls_release(w);
     core_free(w);
 }
 

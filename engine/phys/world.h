@@ -2,6 +2,7 @@
 #ifndef PHYS_WORLD_H
 #define PHYS_WORLD_H
 
+#include "phys/geom.h"
 #include "phys/phys.h"
 #include "phys/vec.h"
 
@@ -83,6 +84,7 @@ CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
     X(uint32_t, body, CORE_COLUMN_STATE)                                                           \
     X(uint32_t, next, CORE_COLUMN_STATE)                                                           \
     X(uint32_t, type, CORE_COLUMN_STATE)                                                           \
+    X(uint32_t, hull, CORE_COLUMN_STATE) /* number in the world's list, from 1; 0: none */         \
     X(core_vec3, half, CORE_COLUMN_STATE)                                                          \
     X(float, radius, CORE_COLUMN_STATE)                                                            \
     X(core_vec3, position, CORE_COLUMN_STATE)                                                      \
@@ -167,6 +169,13 @@ CORE_COLUMNS_DECLARE(phys_visits, PHYS_VISIT_COLUMNS)
 #define PHYS_FIELD_COLUMNS(X) X(phys_field_desc, desc, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(phys_fields, PHYS_FIELD_COLUMNS)
 
+// A hull and who uses it: equal point sets share one.
+typedef struct phys_hull_entry {
+    phys_geom_hull hull;
+    uint64_t hash; // of the points it was made from
+    uint32_t users;
+} phys_hull_entry;
+
 typedef struct phys_event_list {
     phys_event *event;
     uint32_t count, capacity;
@@ -209,6 +218,8 @@ struct phys_world {
     phys_shapes shapes;
     phys_balls balls;
     phys_contacts contacts;
+    struct phys_hull_entry *hulls; // shared by shapes with equal points
+    uint32_t hull_count, hull_capacity;
     phys_triggers triggers;
     phys_visits visits;
     phys_fields fields;
@@ -235,7 +246,8 @@ typedef struct phys_geom {
     core_quat rotation;
     phys_mat3 axes; // body to world
     core_vec3 half;
-    float radius;
+    float radius, half_height; // capsule, cylinder: along the local y axis
+    const phys_geom_hull *hull;
 } phys_geom;
 
 extern const phys_broad_method phys_broad_brute, phys_broad_sap;
@@ -261,12 +273,18 @@ static inline uint32_t phys_row_slot(const core_columns *set, uint32_t row) {
 
 // shape.c
 bool phys_shape_check(const phys_shape_desc *shape, phys_body_type body);
+// hulls.c: number of the hull of a description's points, 0 + core_fail when they span none.
+uint32_t phys_hull_share(phys_world *world, const phys_shape_desc *shape);
+void phys_hull_leave(phys_world *world, uint32_t number);
+void phys_hulls_release(phys_world *world);
+#define PHYS_HULL_FACES  64u
+#define PHYS_HULL_POINTS 4096u
 typedef struct phys_mass { // about the body's origin axes
     float mass;
     core_vec3 center;
     phys_mat3 inertia; // about the centre
 } phys_mass;
-phys_mass phys_shape_mass(const phys_shape_desc *shape);
+bool phys_shape_mass(const phys_shape_desc *shape, phys_mass *out);
 // Principal moments and axes of a symmetric matrix (Jacobi). Diagonal input gives the identity.
 core_vec3 phys_principal(const phys_mat3 *inertia, core_quat *frame);
 phys_geom phys_shape_geom(const phys_world *world, uint32_t shape_row);
@@ -290,6 +308,8 @@ void phys_pairs_rebuild_map(phys_world *world);
 // the caller. a.type <= b.type in the order of phys_shape_type.
 void phys_narrow_update(phys_world *world, float dt);
 void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
+void phys_collide_convex(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
+void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 
 // Picks at most 4 of n > 4 points (same plane, unit normal): keep[3] may be -1.
