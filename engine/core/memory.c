@@ -53,9 +53,6 @@ bool core_commit(void *base, size_t bytes) {
 
 void core_unreserve(void *base, size_t bytes) {
     if (base) {
-        // The sanitizer's shadow outlives the mapping: the next owner of these addresses would
-        // inherit it.
-        ASAN_UNPOISON_MEMORY_REGION(base, bytes);
         munmap(base, round_up(bytes ? bytes : 1, page_size()));
     }
 }
@@ -80,6 +77,10 @@ bool core_arena_init(core_arena *arena, const char *name, size_t reserve_bytes) 
 
 void core_arena_release(core_arena *arena) {
     core_arena_rewind(arena, 0);
+    // The sanitizer's shadow outlives the mapping: the next owner of these addresses would inherit
+    // it. Only what was committed was ever poisoned; the whole range would touch gigabytes of
+    // shadow.
+    ASAN_UNPOISON_MEMORY_REGION(arena->base, arena->committed);
     core_unreserve(arena->base, arena->reserved);
     *arena = (core_arena){0};
 }
