@@ -134,6 +134,11 @@ typedef struct nav_result {
 bool nav_graph_search(nav_world *world, const nav_query *query, nav_result *result, uint32_t *out,
                       uint32_t capacity);
 
+// Nodes of the path that the last search gave, the first `capacity` of result->count: for callers
+// who want to know the length first. Valid until the next search or step.
+void nav_last_path(const nav_world *world, const nav_result *result, uint32_t *out,
+                   uint32_t capacity);
+
 // ---- paths ----
 // A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when
 // its graph has changed; nav_path_update does so at once.
@@ -170,6 +175,7 @@ typedef struct nav_agent_desc {
     float heading;      // rad about +Y, 0 looks along -Z
     // Its position is written by its owner (a body) before each step; the agent gives a velocity.
     bool driven;
+    uint64_t user; // the owner's, kept as it is
     uint32_t cookie;
 } nav_agent_desc;
 nav_agent_desc nav_agent_desc_default(void);
@@ -188,5 +194,9 @@ bool nav_agent_set_max_speed(nav_world *world, nav_agent agent, float speed);
 // Its path, null when it never went anywhere.
 nav_path nav_agent_path(const nav_world *world, nav_agent agent);
 uint32_t nav_agent_count(const nav_world *world);
+nav_agent nav_agent_at(const nav_world *world, uint32_t row); // row < nav_agent_count
+uint64_t nav_agent_user(const nav_world *world, nav_agent agent);
+bool nav_agent_set_user(nav_world *world, nav_agent agent, uint64_t user);
+bool nav_agent_set_driven(nav_world *world, nav_agent agent, bool driven);
 
 #endif

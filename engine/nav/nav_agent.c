@@ -5,6 +5,7 @@
 CORE_COLUMNS_DEFINE(nav_agents, NAV_AGENT_COLUMNS)
 
 #define STUCK_AFTER 2.0f  // s without progress
+#define STEP_HEIGHT 0.5f  // m by which a driven agent may stand off its way
 #define SLOW_TURN   0.25f // share of the speed kept through the sharpest corner
 #define CREEP       0.01f // share of it wanted while the target lies behind
 
@@ -77,6 +78,7 @@ nav_agent nav_agent_create(nav_world *w, const nav_agent_desc *given) {
     a->radius[row] = d.radius, a->max_speed[row] = d.max_speed;
     a->acceleration[row] = d.acceleration, a->turn_rate[row] = d.turn_rate;
     a->arrive[row] = d.arrive, a->driven[row] = d.driven;
+    a->user[row] = d.user;
     return agent;
 }
 
@@ -196,6 +198,29 @@ nav_path nav_agent_path(const nav_world *w, nav_agent agent) {
 }
 uint32_t nav_agent_count(const nav_world *w) { return core_columns_count(&w->agent.set); }
 
+nav_agent nav_agent_at(const nav_world *w, uint32_t row) {
+    return row < core_columns_count(&w->agent.set) ? core_columns_handle(&w->agent.set, row)
+                                                   : CORE_NULL_HANDLE;
+}
+uint64_t nav_agent_user(const nav_world *w, nav_agent agent) {
+    uint32_t row = agent_row(w, agent);
+    return row == CORE_NO_ROW ? 0 : w->agent.user[row];
+}
+bool nav_agent_set_user(nav_world *w, nav_agent agent, uint64_t user) {
+    uint32_t row = agent_row(w, agent);
+    if (row != CORE_NO_ROW) {
+        w->agent.user[row] = user;
+    }
+    return row != CORE_NO_ROW;
+}
+bool nav_agent_set_driven(nav_world *w, nav_agent agent, bool driven) {
+    uint32_t row = agent_row(w, agent);
+    if (row != CORE_NO_ROW) {
+        w->agent.driven[row] = driven;
+    }
+    return row != CORE_NO_ROW;
+}
+
 // ---- following ----
 
 static core_vec3 node_at(const nav_world *w, const nav_path_head *p, const nav_path_nodes *nodes,
@@ -297,6 +322,9 @@ static bool advance(nav_world *w, uint32_t row, uint32_t path, float dt, core_ve
         float v = core_sqrtf(a->vx[row] * a->vx[row] + a->vz[row] * a->vz[row]);
         float near = last ? a->arrive[row] : CORE_MAX(0.5f * a->radius[row], 1.5f * v * dt);
         core_vec3 to = core_v3_sub(*target, here);
+        if (a->driven[row] && core_absf(to.y) <= STEP_HEIGHT) {
+            to.y = 0.0f; // physics decides how high it stands
+        }
         if (core_v3_dot(to, to) > near * near) {
             return true;
         }

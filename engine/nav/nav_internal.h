@@ -100,6 +100,7 @@ CORE_COLUMNS_DECLARE(nav_paths, NAV_PATH_COLUMNS)
     X(uint32_t, corners, CORE_COLUMN_STATE) /* nodes of the path that it uses */                   \
     X(uint32_t, plans, CORE_COLUMN_STATE)   /* of the path when `corner` was set */                \
     X(uint32_t, driven, CORE_COLUMN_STATE)                                                         \
+    X(uint64_t, user, CORE_COLUMN_STATE)                                                           \
     X(core_handle, path, CORE_COLUMN_STATE)                                                        \
     X(float, wx, 0) /* velocity wanted in this step */                                             \
     X(float, wz, 0)                                                                                \
@@ -150,9 +151,6 @@ void nav_cells_release(nav_cells *cells);
 // nav_search.c
 void nav_scratch_fit(nav_scratch *scratch, uint32_t nodes);
 void nav_scratch_release(nav_scratch *scratch);
-// Nodes of the way that the last search found to `end`, the first `capacity` of `count`.
-void nav_search_nodes(const nav_world *world, uint32_t end, uint32_t count, uint32_t *out,
-                      uint32_t capacity);
 double nav_octile(double dx, double dy, double dz);
 // nav_path.c
 void nav_path_refresh(nav_world *world, uint32_t row); // plans when its graph has changed

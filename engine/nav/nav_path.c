@@ -89,7 +89,7 @@ static void plan(nav_world *w, uint32_t row) {
         return; // an empty graph
     }
     fit(nodes, result.count);
-    nav_search_nodes(w, result.reached, result.count, nodes->node, nodes->capacity);
+    nav_last_path(w, &result, nodes->node, nodes->capacity);
     p->status = (uint32_t)result.status;
     p->count = result.count;
     p->cost = result.cost;

@@ -192,10 +192,9 @@ static void next_stamp(nav_scratch *s) {
     }
 }
 
-void nav_search_nodes(const nav_world *w, uint32_t end, uint32_t count, uint32_t *out,
-                      uint32_t capacity) {
-    uint32_t n = end;
-    for (uint32_t i = count; i-- > 0; n = w->scratch.record[n].parent) {
+void nav_last_path(const nav_world *w, const nav_result *result, uint32_t *out, uint32_t capacity) {
+    uint32_t n = result->reached;
+    for (uint32_t i = result->count; i-- > 0; n = w->scratch.record[n].parent) {
         if (i < capacity) {
             out[i] = n;
         }
@@ -223,8 +222,8 @@ static bool check(const nav_world *w, const nav_query *query, nav_result *result
     const uint32_t ends[] = {query->start, query->goal};
     for (int i = 0; i < 2; i++) {
         if (!nav_graph_node_exists(w, query->graph, ends[i])) {
-            return core_fail("nav graph '%s': a search %s node %u, which does not exist",
-                             w->graph.data[row]->name, i ? "to" : "from", ends[i]);
+            return core_fail("nav graph '%s': there is no node %u to search %s",
+                             w->graph.data[row]->name, ends[i], i ? "to" : "from");
         }
     }
     if ((unsigned)query->heuristic > NAV_ZERO ||
@@ -265,7 +264,7 @@ bool nav_graph_search(nav_world *w, const nav_query *query, nav_result *result, 
     result->expanded = q.expanded;
     if (found || query->partial) {
         measure_path(&q, query->start, found ? query->goal : q.nearest, result);
-        nav_search_nodes(w, result->reached, result->count, out, out ? capacity : 0);
+        nav_last_path(w, result, out, out ? capacity : 0);
         if (!found && result->status == NAV_NO_PATH) {
             result->status = NAV_PARTIAL;
         }

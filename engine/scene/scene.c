@@ -8,13 +8,13 @@
 #include "scene/scene_internal.h"
 
 #define SCENE_COOKIE   0x5ce7e001u
-#define SCENE_MAX_SETS 64
+#define SCENE_MAX_SETS 256
 
 CORE_COLUMNS_DEFINE(scene_entities, SCENE_ENTITY_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_names, SCENE_NAME_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_clock, SCENE_CLOCK_COLUMNS)
 
-static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim", "audio"};
+static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim", "nav", "audio"};
 
 scene_desc scene_desc_default(void) {
     return (scene_desc){.dt = 1.0f / 60.0f, .max_entities = 1u << 20, .cookie = SCENE_COOKIE};
@@ -61,6 +61,7 @@ void scene_destroy(scene *s) {
     }
     scene_models_destroy(s);
     anim_world_destroy(s->anim);
+    nav_world_destroy(s->nav);
     scene_audio_destroy(s);
     if (s->phys) {
         phys_world_destroy(s->phys);
@@ -82,7 +83,8 @@ void scene_set_hooks(scene *s, const scene_hooks *hooks) {
 }
 
 bool scene_configure(scene *s, core_jobs *jobs, uint64_t seed, float dt) {
-    if (s->phys || s->gfx || s->anim || s->audio || scene_step_index(s) || scene_entity_count(s)) {
+    if (s->phys || s->gfx || s->anim || s->nav || s->audio || scene_step_index(s) ||
+        scene_entity_count(s)) {
         return core_fail("scene: workers, seed and dt are fixed once the scene has begun; set them "
                          "in corsac.conf or on the command line");
     }
@@ -149,6 +151,7 @@ bool scene_step(scene *s) {
         core_stage_end(s->metrics, CORE_STAGE_SCRIPT);
     }
     bool ok = true;
+    scene_nav_step(s);
     scene_anim_update(s);
     if (s->phys) {
         ok = phys_world_step(s->phys, s->dt);
@@ -188,6 +191,10 @@ int scene_state(const scene *s, const core_columns **out, int capacity) {
     if (s->anim) {
         int room = capacity > count ? capacity - count : 0;
         count += anim_world_state(s->anim, out && room ? out + count : NULL, room);
+    }
+    if (s->nav) {
+        int room = capacity > count ? capacity - count : 0;
+        count += nav_world_state(s->nav, out && room ? out + count : NULL, room);
     }
     if (s->audio) {
         int room = capacity > count ? capacity - count : 0;
@@ -247,6 +254,9 @@ void scene_counts(const scene *s) {
     if (s->anim) {
         anim_world_counts(s->anim, s->metrics);
     }
+    if (s->nav) {
+        nav_world_counts(s->nav, s->metrics);
+    }
     if (s->audio) {
         audio_world_counts(s->audio, s->metrics);
     }
@@ -260,6 +270,7 @@ scene_memory scene_memory_use(const scene *s) {
              (s->setting ? sizeof *s->setting * SCENE_MAX_SETTINGS : 0);
     m.phys = s->phys ? phys_world_bytes(s->phys) : 0;
     m.gfx = s->gfx ? gfx_world_bytes(s->gfx) : 0;
+    m.nav = s->nav ? nav_world_bytes(s->nav) : 0;
     m.audio = s->audio ? audio_world_bytes(s->audio) : 0;
     m.anim = s->anim ? anim_world_bytes(s->anim) : 0;
     return m;

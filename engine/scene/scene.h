@@ -11,6 +11,7 @@
 #include "core/rng.h"
 #include "core/vfs.h"
 #include "gfx/gfx.h"
+#include "nav/nav.h"
 #include "phys/phys.h"
 
 #define SCENE_NAME_MAX 64 // bytes with the terminating zero; longer names are refused
@@ -50,6 +51,8 @@ gfx_world *scene_gfx(scene *s);
 gfx_world *scene_gfx_if(const scene *s);
 anim_world *scene_anim(scene *s);
 anim_world *scene_anim_if(const scene *s);
+nav_world *scene_nav(scene *s);
+nav_world *scene_nav_if(const scene *s);
 audio_world *scene_audio(scene *s);
 audio_world *scene_audio_if(const scene *s);
 core_metrics *scene_metrics(const scene *s);
@@ -122,6 +125,12 @@ phys_body scene_entity_body(const scene *s, scene_entity e);
 gfx_instance scene_entity_instance(const scene *s, scene_entity e);
 scene_entity scene_entity_of_body(const scene *s, phys_body body);
 anim_instance scene_entity_anim(const scene *s, scene_entity e); // null: not animated
+// Gives the entity an agent (destroyed with it). Without a body the entity goes where the agent
+// goes and looks along its heading; a body is given the agent's velocity on the ground, and the
+// agent is where the body is. offset: height of the entity's origin above the agent's point, m.
+bool scene_set_agent(scene *s, scene_entity e, nav_agent agent, float offset);
+nav_agent scene_entity_agent(const scene *s, scene_entity e); // null: none
+scene_entity scene_entity_of_agent(const scene *s, nav_agent agent);
 scene_entity scene_entity_of_anim(const scene *s, anim_instance instance);
 // Gives the entity an animation instance (destroyed with it). Its meshes follow the palette; root
 // motion moves the entity, or sets the horizontal velocity of its body.

@@ -94,6 +94,7 @@ static void remove_entity(scene *s, scene_entity self) {
         phys_body_destroy(s->phys, e->body[row]);
     }
     scene_anim_leave(s, row);
+    scene_nav_leave(s, row);
     scene_audio_leave(s, row);
     if (!core_handle_is_null(e->instance[row])) {
         gfx_instance_destroy(s->gfx, e->instance[row]);

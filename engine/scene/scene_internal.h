@@ -26,6 +26,8 @@
     X(core_handle, body, CORE_COLUMN_STATE)                                                        \
     X(core_handle, name, CORE_COLUMN_STATE)                                                        \
     X(core_handle, anim, CORE_COLUMN_STATE)   /* owned */                                          \
+    X(core_handle, agent, CORE_COLUMN_STATE)  /* owned */                                          \
+    X(float, agent_offset, CORE_COLUMN_STATE) /* of the entity above its agent, m */               \
     X(core_handle, source, CORE_COLUMN_STATE) /* of sound, owned */                                \
     X(core_handle, skin, 0)                   /* whose palette its mesh follows */                 \
     X(float, wpx, 0)                                                                               \
@@ -87,6 +89,7 @@ struct scene {
     phys_world *phys;
     gfx_world *gfx;
     anim_world *anim;
+    nav_world *nav;
     audio_world *audio;
     scene_sounds *sounds;  // made with the first one
     scene_entity listener; // null: the camera, unless listener_placed
@@ -119,6 +122,9 @@ void scene_anim_pose(scene *s);   // palettes, after physics
 void scene_anim_sync(scene *s);   // palettes into gfx
 void scene_anim_leave(scene *s, uint32_t row);
 bool scene_add_model(scene *s, uint32_t row, const scene_spawn_desc *d);
+// scene_nav.c
+void scene_nav_step(scene *s); // agents, and the entities they lead; before physics
+void scene_nav_leave(scene *s, uint32_t row);
 // scene_audio.c
 void scene_audio_step(scene *s);
 void scene_audio_leave(scene *s, uint32_t row);

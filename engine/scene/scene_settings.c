@@ -46,6 +46,17 @@ static bool anim_set(void *world, const char *name, const char *value) {
     return anim_world_set(world, name, value);
 }
 
+static void *nav_present(const scene *s) { return s->nav; }
+static void *nav_trial(void) {
+    nav_world_desc desc = nav_world_desc_default();
+    desc.max_agents = 64;
+    return nav_world_create(&desc);
+}
+static void nav_discard(void *world) { nav_world_destroy(world); }
+static bool nav_set(void *world, const char *name, const char *value) {
+    return nav_world_set(world, name, value);
+}
+
 static void *audio_present(const scene *s) { return s->audio; }
 static void *audio_trial(void) {
     audio_world_desc desc = audio_world_desc_default();
@@ -61,6 +72,7 @@ static const settable_room rooms[] = {
     {"phys", phys_present, phys_trial, phys_discard, phys_set},
     {"gfx", gfx_present, gfx_trial, gfx_discard, gfx_set},
     {"anim", anim_present, anim_trial, anim_discard, anim_set},
+    {"nav", nav_present, nav_trial, nav_discard, nav_set},
     {"audio", audio_present, audio_trial, audio_discard, audio_set},
 };
 

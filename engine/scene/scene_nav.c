@@ -1,0 +1,117 @@
+// Agents in a scene: who leads whom. An entity without a body follows its agent; a body is pushed
+// along by it, and says where the agent is.
+#include "scene/scene_internal.h"
+
+nav_world *scene_nav(scene *s) {
+    if (!s->nav) {
+        nav_world_desc desc = nav_world_desc_default();
+        desc.jobs = s->jobs;
+        desc.metrics = s->metrics;
+        s->nav = nav_world_create(&desc);
+        scene_settings_apply(s, "nav", s->nav);
+    }
+    return s->nav;
+}
+nav_world *scene_nav_if(const scene *s) { return s->nav; }
+
+nav_agent scene_entity_agent(const scene *s, scene_entity e) {
+    uint32_t row = core_columns_row(&s->entity.set, e);
+    return row == CORE_NO_ROW ? CORE_NULL_HANDLE : s->entity.agent[row];
+}
+
+scene_entity scene_entity_of_agent(const scene *s, nav_agent agent) {
+    if (!s->nav || !nav_agent_alive(s->nav, agent)) {
+        return CORE_NULL_HANDLE;
+    }
+    uint64_t bits = nav_agent_user(s->nav, agent);
+    scene_entity e = {(uint32_t)bits, (uint32_t)(bits >> 32)};
+    return core_handle_equal(scene_entity_agent(s, e), agent) ? e : CORE_NULL_HANDLE;
+}
+
+static bool has_body(const scene *s, uint32_t row) {
+    return s->phys && phys_body_alive(s->phys, s->entity.body[row]);
+}
+
+static core_vec3 feet(const scene *s, uint32_t row) {
+    core_vec3 p = {0, 0, 0};
+    scene_position(s, core_columns_handle(&s->entity.set, row), &p);
+    p.y -= s->entity.agent_offset[row];
+    return p;
+}
+
+bool scene_set_agent(scene *s, scene_entity e, nav_agent agent, float offset) {
+    uint32_t row = scene_row(s, e);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    if (!s->nav || !nav_agent_alive(s->nav, agent)) {
+        return core_fail("scene_set_agent: the agent does not exist");
+    }
+    if (!(offset - offset == 0.0f)) {
+        return core_fail("scene_set_agent: offset is %g m, expected a finite number",
+                         (double)offset);
+    }
+    if (!core_handle_equal(s->entity.agent[row], agent)) {
+        scene_nav_leave(s, row);
+    }
+    s->entity.agent[row] = agent;
+    s->entity.agent_offset[row] = offset;
+    nav_agent_set_user(s->nav, agent, core_handle_bits(e));
+    nav_agent_set_driven(s->nav, agent, has_body(s, row));
+    return nav_agent_set_position(s->nav, agent, feet(s, row));
+}
+
+void scene_nav_leave(scene *s, uint32_t row) {
+    if (s->nav && nav_agent_alive(s->nav, s->entity.agent[row])) {
+        nav_agent_destroy(s->nav, s->entity.agent[row]);
+    }
+    s->entity.agent[row] = CORE_NULL_HANDLE;
+}
+
+// What the script has moved, and what bodies have, since the last step.
+static void place_agents(scene *s) {
+    for (uint32_t i = 0; i < nav_agent_count(s->nav); i++) {
+        nav_agent agent = nav_agent_at(s->nav, i);
+        uint32_t row = core_columns_row(&s->entity.set, scene_entity_of_agent(s, agent));
+        if (row != CORE_NO_ROW) {
+            nav_agent_set_driven(s->nav, agent, has_body(s, row));
+            nav_agent_set_position(s->nav, agent, feet(s, row));
+        }
+    }
+}
+
+static void lead(scene *s, uint32_t row, nav_agent agent) {
+    core_vec3 v = {0, 0, 0}, p = {0, 0, 0};
+    float heading = 0.0f;
+    scene_entities *e = &s->entity;
+    nav_agent_velocity(s->nav, agent, &v);
+    nav_agent_heading(s->nav, agent, &heading);
+    if (has_body(s, row)) {
+        if (nav_agent_status(s->nav, agent) != NAV_AGENT_IDLE) {
+            core_vec3 now;
+            phys_body_velocity(s->phys, e->body[row], &now);
+            phys_body_set_velocity(s->phys, e->body[row], core_v3(v.x, now.y, v.z));
+        }
+        return;
+    }
+    nav_agent_position(s->nav, agent, &p);
+    core_quat turn = core_quat_axis_angle((core_vec3){0, 1, 0}, heading);
+    e->wpx[row] = p.x, e->wpy[row] = p.y + e->agent_offset[row], e->wpz[row] = p.z;
+    e->wqx[row] = turn.x, e->wqy[row] = turn.y, e->wqz[row] = turn.z, e->wqw[row] = turn.w;
+    scene_local_from_world(s, row);
+}
+
+void scene_nav_step(scene *s) {
+    if (!s->nav) {
+        return;
+    }
+    place_agents(s);
+    nav_world_step(s->nav, s->dt);
+    for (uint32_t i = 0; i < nav_agent_count(s->nav); i++) {
+        nav_agent agent = nav_agent_at(s->nav, i);
+        uint32_t row = core_columns_row(&s->entity.set, scene_entity_of_agent(s, agent));
+        if (row != CORE_NO_ROW) {
+            lead(s, row, agent);
+        }
+    }
+}
