@@ -7,6 +7,7 @@ CORE_COLUMNS_DEFINE(nav_agents, NAV_AGENT_COLUMNS)
 #define STUCK_AFTER 2.0f  // s without progress
 #define STEP_HEIGHT 0.5f  // m by which a driven agent may stand off its way
 #define SLOW_TURN   0.25f // share of the speed kept through the sharpest corner
+#define SLOWEST     0.05f // share of it kept up to the goal
 #define CREEP       0.01f // share of it wanted while the target lies behind
 
 const char *nav_agent_state_name(nav_agent_state state) {
@@ -273,21 +274,32 @@ typedef struct flat { // a vector on the ground
 } flat;
 static float flat_length(flat v) { return core_sqrtf(v.x * v.x + v.z * v.z); }
 
-// Speed with which to arrive at the present way point, `distance` before it: stop at the last one,
-// at others keep what the turn allows.
-static float speed_at(const nav_world *w, uint32_t row, uint32_t path, core_vec3 target, flat to,
-                      float distance) {
+// Speed that lets it brake in time for all that comes: the end of the way, where it stops (short of
+// the goal by half of what counts as there, so that it comes to rest on it), and corners, where it
+// keeps what the turn allows.
+static float speed_for_way(const nav_world *w, uint32_t row, uint32_t path, core_vec3 target,
+                           flat to, float distance) {
     const nav_agents *a = &w->agent;
-    float through = 0.0f, full = a->max_speed[row];
-    core_vec3 next;
-    if (way_point(w, row, path, a->corner[row] + 1, &next)) {
+    float full = a->max_speed[row], brake = 2.0f * a->acceleration[row];
+    float limit = full, size = distance;
+    for (uint32_t i = a->corner[row] + 1; brake * distance < full * full; i++) {
+        core_vec3 next;
+        if (!way_point(w, row, path, i, &next)) {
+            float left = CORE_MAX(distance - 0.5f * a->arrive[row], 0.0f);
+            limit = CORE_MIN(limit, core_sqrtf(brake * left));
+            break;
+        }
         flat on = {next.x - target.x, next.z - target.z};
-        float size = flat_length(on) * distance;
-        float cosine = size > 0.0f ? (on.x * to.x + on.z * to.z) / size : 1.0f;
-        through = full * CORE_MAX(cosine, SLOW_TURN);
+        float length = flat_length(on);
+        if (length > 0.0f) {
+            float cosine = (on.x * to.x + on.z * to.z) / (length * size);
+            float through = full * CORE_MAX(cosine, SLOW_TURN);
+            limit = CORE_MIN(limit, core_sqrtf(through * through + brake * distance));
+            target = next, to = on, size = length;
+            distance += length;
+        }
     }
-    float limit = core_sqrtf(through * through + 2.0f * a->acceleration[row] * distance);
-    return CORE_MIN(full, limit);
+    return CORE_MAX(limit, SLOWEST * full);
 }
 
 // Who can turn only so fast must be slow enough for a circle through the target: its radius is
@@ -393,7 +405,7 @@ static void steer(nav_world *w, uint32_t row, float dt) {
         a->lift[row] = to3.y < 0.0f ? -climb : climb;
         return;
     }
-    float speed = speed_at(w, row, path, target, to, ground);
+    float speed = speed_for_way(w, row, path, target, to, ground);
     speed = CORE_MIN(speed, turning_limit(a, row, to, ground)) * (ground / distance);
     speed = CORE_MIN(speed, ground / dt);
     a->wx[row] = to.x / ground * speed, a->wz[row] = to.z / ground * speed;

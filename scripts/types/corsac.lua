@@ -332,6 +332,190 @@ function Animator:isDestroyed() end
 ---Removes it; its entity then shows the bind pose.
 function Animator:destroy() end
 
+---Waypoints and the links between them.
+---@class corsac.Graph
+local Graph = {}
+
+---Adds a node; its id is the number of nodes made before it.
+---@param x number
+---@param y number
+---@param z number
+---@return integer id
+function Graph:add(x, y, z) end
+
+---Removes a node and all its links.
+---@param node integer which
+function Graph:remove(node) end
+
+---Moves a node; its links keep their costs.
+---@param node integer which
+---@param x number
+---@param y number
+---@param z number
+function Graph:move(node, x, y, z) end
+
+---Links two nodes both ways at the cost of their distance.
+---@param a integer a node
+---@param b integer another
+function Graph:connect(a, b) end
+
+---Removes the links between two nodes.
+---@param a integer a node
+---@param b integer another
+function Graph:disconnect(a, b) end
+
+---Links one way.
+---@param a integer from this node
+---@param b integer to this
+---@param cost number of the way
+function Graph:link(a, b, cost) end
+
+---Removes a link one way.
+---@param a integer from this node
+---@param b integer to this
+function Graph:unlink(a, b) end
+
+---Sets what a link costs.
+---@param a integer from this node
+---@param b integer to this
+---@param cost number of the way
+function Graph:setCost(a, b, cost) end
+
+---Opens or closes a link, as a door.
+---@param a integer from this node
+---@param b integer to this
+---@param open boolean may be walked
+function Graph:setOpen(a, b, open) end
+
+---Id of the node nearest to a point, nil when there is none.
+---@param x number
+---@param y number
+---@param z number
+---@param limit? number largest distance; 0: any
+---@return integer? id
+function Graph:nearest(x, y, z, limit) end
+
+---Where a node is.
+---@param node integer which
+---@return number x
+---@return number y
+---@return number z
+function Graph:getPosition(node) end
+
+---How many nodes it has.
+---@return integer count
+function Graph:getCount() end
+
+---Ids of its nodes, ascending.
+---@return integer[] ids
+function Graph:getNodes() end
+
+---Links of a node in order of creation: tables {to, cost, open}.
+---@param node integer which
+---@return table[] links
+function Graph:getLinks(node) end
+
+---Nodes, positions, links and costs as text, one node a line.
+---@return string text
+function Graph:getText() end
+
+---@class Graph.findPath.options
+---@field heuristic? "euclid"|"octile"|"zero" of A*; zero is Dijkstra's way
+---@field weight? number how many times the least cost the path may cost
+---@field partial? boolean without a way: go to the node nearest to the goal
+---@field limit? integer nodes to expand at most; 0: any number
+
+---Cheapest way: ids of its nodes (nil without one), its cost, and the status.
+---@param start integer from this node
+---@param goal integer to this
+---@param options? Graph.findPath.options how to search
+---@return integer[]? ids
+---@return number cost
+---@return string status
+function Graph:findPath(start, goal, options) end
+
+---Removes it; its paths and agents are left without a way.
+function Graph:destroy() end
+
+---A way between two points that follows its graph.
+---@class corsac.Path
+local Path = {}
+
+---Gives it another start and goal and plans it.
+---@param start number[] where it begins
+---@param goal number[] where it ends
+function Path:set(start, goal) end
+
+---Plans it now; a step does so when the graph has changed.
+---@return string status
+function Path:update() end
+
+---"found", "partial", "no path" or "invalid" (its graph is gone).
+---@return string status
+function Path:getStatus() end
+
+---Sum of its links' costs.
+---@return number cost
+function Path:getCost() end
+
+---Ids of its nodes from start to goal.
+---@return integer[] ids
+function Path:getNodes() end
+
+---Removes it.
+function Path:destroy() end
+
+---Walks along paths.
+---@class corsac.Agent
+local Agent = {}
+
+---Walks on a graph to the node nearest to a point, then to the point.
+---@param graph corsac.Graph on which
+---@param x number
+---@param y number
+---@param z number
+function Agent:go(graph, x, y, z) end
+
+---Stands still.
+function Agent:stop() end
+
+---"idle", "walking", "arrived" or "stuck".
+---@return string state
+function Agent:getState() end
+
+---Where it stands.
+---@return number x
+---@return number y
+---@return number z
+function Agent:getPosition() end
+
+---Places it; not for agents of entities.
+---@param x number
+---@param y number
+---@param z number
+function Agent:setPosition(x, y, z) end
+
+---How it moves.
+---@return number x
+---@return number y
+---@return number z
+function Agent:getVelocity() end
+
+---Where it looks: about +Y, 0 along -Z.
+---@return number heading
+function Agent:getHeading() end
+
+---How fast it may go.
+---@param speed number
+function Agent:setMaxSpeed(speed) end
+
+---Whom it leads, or nil.
+---@return corsac.Entity? entity
+function Agent:getEntity() end
+
+---Removes it; its entity stays.
+function Agent:destroy() end
+
 ---The run: parameters, time, log.
 ---@class corsac
 ---@field load? fun(args: string[])
@@ -743,3 +927,38 @@ function corsac.anim.newAnimator(skeleton, machine, clip) end
 ---Clip events passed in the last step: tables {animator, name, time}.
 ---@return table[] events
 function corsac.anim.getEvents() end
+
+---Waypoint graphs, paths and agents.
+corsac.nav = {}
+
+---@class corsac.nav.newGraph.options
+---@field name? string for its text and errors
+---@field maxLinks? integer links one node may have
+
+---Makes an empty waypoint graph.
+---@param options? corsac.nav.newGraph.options the graph
+---@return corsac.Graph graph
+function corsac.nav.newGraph(options) end
+
+---Plans a way between two points by way of the nodes nearest to them.
+---@param graph corsac.Graph on which
+---@param start number[] where it begins
+---@param goal number[] where it ends
+---@return corsac.Path path
+function corsac.nav.newPath(graph, start, goal) end
+
+---@class corsac.nav.newAgent.options
+---@field entity? corsac.Entity whom it leads: without a body it goes where the agent goes, a body is pushed along
+---@field position? number[] where it stands, without an entity, m
+---@field offset? number height of the entity's origin above its feet, m
+---@field radius? number room it needs, m
+---@field maxSpeed? number m/s
+---@field acceleration? number braking too, m/s^2
+---@field turnRate? number 0: turns at once, rad/s
+---@field arrive? number how near to the goal it stops, m
+---@field heading? number about +Y, 0 looks along -Z, rad
+
+---Makes an agent; with an entity, it leads that entity or its body.
+---@param options corsac.nav.newAgent.options the agent
+---@return corsac.Agent agent
+function corsac.nav.newAgent(options) end

@@ -34,6 +34,9 @@ static const struct {
     {"Clip", "local s = " SKELETON " return " CLIP},
     {"Machine", "local s = " SKELETON
                 " return corsac.anim.newMachine{states = {{name = 'a', clip = " CLIP "}}}"},
+    {"Graph", "local g = corsac.nav.newGraph{} g:add(0, 0, 0) g:add(1, 0, 0) return g"},
+    {"Path", "local g = corsac.nav.newGraph{} return corsac.nav.newPath(g, {0, 0, 0}, {1, 0, 0})"},
+    {"Agent", "return corsac.nav.newAgent{position = {0, 0, 0}}"},
     {"Animator", "return corsac.anim.newAnimator(" SKELETON ")"},
 };
 
