@@ -278,7 +278,7 @@ static float flat_length(flat v) { return core_sqrtf(v.x * v.x + v.z * v.z); }
 // the goal by half of what counts as there, so that it comes to rest on it), and corners, where it
 // keeps what the turn allows.
 static float speed_for_way(const nav_world *w, uint32_t row, uint32_t path, core_vec3 target,
-                           flat to, float distance) {
+                           core_vec3 to, float distance) {
     const nav_agents *a = &w->agent;
     float full = a->max_speed[row], brake = 2.0f * a->acceleration[row];
     float limit = full, size = distance;
@@ -289,11 +289,10 @@ static float speed_for_way(const nav_world *w, uint32_t row, uint32_t path, core
             limit = CORE_MIN(limit, core_sqrtf(brake * left));
             break;
         }
-        flat on = {next.x - target.x, next.z - target.z};
-        float length = flat_length(on);
+        core_vec3 on = core_v3_sub(next, target);
+        float length = core_v3_length(on);
         if (length > 0.0f) {
-            float cosine = (on.x * to.x + on.z * to.z) / (length * size);
-            float through = full * CORE_MAX(cosine, SLOW_TURN);
+            float through = full * CORE_MAX(core_v3_dot(on, to) / (length * size), SLOW_TURN);
             limit = CORE_MIN(limit, core_sqrtf(through * through + brake * distance));
             target = next, to = on, size = length;
             distance += length;
@@ -405,7 +404,7 @@ static void steer(nav_world *w, uint32_t row, float dt) {
         a->lift[row] = to3.y < 0.0f ? -climb : climb;
         return;
     }
-    float speed = speed_for_way(w, row, path, target, to, ground);
+    float speed = speed_for_way(w, row, path, target, to3, distance);
     speed = CORE_MIN(speed, turning_limit(a, row, to, ground)) * (ground / distance);
     speed = CORE_MIN(speed, ground / dt);
     a->wx[row] = to.x / ground * speed, a->wz[row] = to.z / ground * speed;
