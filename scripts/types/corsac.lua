@@ -516,6 +516,74 @@ function Agent:getEntity() end
 ---Removes it; its entity stays.
 function Agent:destroy() end
 
+---Samples that sources play.
+---@class corsac.Sound
+local Sound = {}
+
+---Its length.
+---@return number duration
+function Sound:getDuration() end
+
+---One thing that sounds.
+---@class corsac.Source
+local Source = {}
+
+---Starts it, or goes on after a pause.
+function Source:play() end
+
+---Holds it where it is.
+function Source:pause() end
+
+---Stops it; play begins at the start again.
+function Source:stop() end
+
+---Whether it plays, heard or not.
+---@return boolean playing
+function Source:isPlaying() end
+
+---Where it is in its sound.
+---@return number time
+function Source:getTime() end
+
+---Moves to a place in its sound.
+---@param time number from the start
+function Source:seek(time) end
+
+---Moves it; one that hangs on an entity follows that instead.
+---@param x number
+---@param y number
+---@param z number
+function Source:setPosition(x, y, z) end
+
+---Velocity for the Doppler effect.
+---@param x number
+---@param y number
+---@param z number
+function Source:setVelocity(x, y, z) end
+
+---Axis of its cone.
+---@param x number
+---@param y number
+---@param z number
+function Source:setDirection(x, y, z) end
+
+---Loudness; ends a fade.
+---@param gain number factor of amplitude
+function Source:setGain(gain) end
+
+---Speed of playback.
+---@param pitch number factor
+function Source:setPitch(pitch) end
+
+---Moves its gain over a time.
+---@param gain number at the end
+---@param seconds number of step time
+---@param stop? boolean and then stops
+function Source:fade(gain, seconds, stop) end
+
+---Removes it.
+function Source:destroy() end
+
 ---The run: parameters, time, log.
 ---@class corsac
 ---@field load? fun(args: string[])
@@ -962,3 +1030,55 @@ function corsac.nav.newPath(graph, start, goal) end
 ---@param options corsac.nav.newAgent.options the agent
 ---@return corsac.Agent agent
 function corsac.nav.newAgent(options) end
+
+---Sounds in space: sources, groups, a listener.
+corsac.audio = {}
+
+---Reads a WAV file; the same path gives the same sound.
+---@param path string in the game's folder
+---@return corsac.Sound sound
+function corsac.audio.newSound(path) end
+
+---@class corsac.audio.newSource.options
+---@field sound corsac.Sound what it plays
+---@field entity? corsac.Entity that it follows and ends with
+---@field position? number[] m
+---@field velocity? number[] for the Doppler effect, m/s
+---@field direction? number[] axis of the cone; zero: the same all around
+---@field gain? number factor of amplitude
+---@field pitch? number factor of speed
+---@field reference? number distance of full loudness, m
+---@field maxDistance? number beyond it the loudness stays, m
+---@field rolloff? number 0: distance does not matter
+---@field inner? number full angle of full loudness, rad
+---@field outer? number full angle of the cone, rad
+---@field coneGain? number factor outside the cone
+---@field loop? boolean again and again, without a gap
+---@field flat? boolean without a place: music, menus
+---@field paused? boolean waits for play
+---@field group? string whose loudness it shares
+
+---Makes something that sounds, and starts it.
+---@param options corsac.audio.newSource.options the source
+---@return corsac.Source source
+function corsac.audio.newSource(options) end
+
+---@class corsac.audio.setListener.options
+---@field entity? corsac.Entity who hears; looks along its -Z
+---@field position? number[] a fixed place instead, m
+---@field rotation? number[]|corsac.AxisAngle at a fixed place
+---@field velocity? number[] at a fixed place, m/s
+
+---Who hears; without it, the camera does.
+---@param options corsac.audio.setListener.options the listener
+function corsac.audio.setListener(options) end
+
+---Loudness of all sources of a group.
+---@param name string "effects", "music", your own
+---@param gain number factor of amplitude
+function corsac.audio.setGroup(name, gain) end
+
+---Loudness of a group.
+---@param name string of the group
+---@return number gain
+function corsac.audio.getGroup(name) end
