@@ -225,6 +225,8 @@ static bool params_declared(app_run *r) {
 
 static void hook_fixed(void *ctx, float dt) { script_fixed(((app_run *)ctx)->script, dt); }
 
+static void hook_events(void *ctx) { script_step_events(((app_run *)ctx)->script); }
+
 static bool make_scene(app_run *r) {
     scene_desc desc = scene_desc_default();
     desc.metrics = r->metrics;
@@ -233,7 +235,7 @@ static bool make_scene(app_run *r) {
     if (!r->scene) {
         return app_fail(r, APP_EXIT_ENVIRONMENT);
     }
-    scene_set_hooks(r->scene, &(scene_hooks){.ctx = r, .fixed = hook_fixed});
+    scene_set_hooks(r->scene, &(scene_hooks){.ctx = r, .fixed = hook_fixed, .events = hook_events});
     for (uint32_t i = 0; i < r->start.argument_count; i++) {
         r->argument[i] = r->start.argument[i];
     }

@@ -135,6 +135,28 @@ gfx_world *scene_gfx_if(const scene *s) { return s->gfx; }
 core_metrics *scene_metrics(const scene *s) { return s->metrics; }
 core_vfs *scene_vfs(const scene *s) { return s->vfs; }
 
+int scene_layer(scene *s, const char *name) {
+    if (!s->layer_count) {
+        strcpy(s->layer[s->layer_count++], "default");
+    }
+    for (uint32_t i = 0; i < s->layer_count; i++) {
+        if (strcmp(s->layer[i], name) == 0) {
+            return (int)i;
+        }
+    }
+    if (!name[0] || strlen(name) >= SCENE_LAYER_NAME || s->layer_count == CORE_COUNT_OF(s->layer)) {
+        core_fail("layer '%.40s': at most %zu layers, with names of 1 to %d bytes", name,
+                  CORE_COUNT_OF(s->layer), SCENE_LAYER_NAME - 1);
+        return -1;
+    }
+    strcpy(s->layer[s->layer_count], name);
+    return (int)s->layer_count++;
+}
+
+const char *scene_layer_name(const scene *s, uint32_t layer) {
+    return layer < s->layer_count ? s->layer[layer] : layer == 0 ? "default" : "";
+}
+
 core_rng *scene_rng(scene *s, uint64_t stream) {
     return stream == CORE_RNG_VIEW ? &s->view_rng : &s->clock.sim[0];
 }

@@ -71,6 +71,11 @@ bool scene_step(scene *s);
 uint64_t scene_step_index(const scene *s); // steps done
 float scene_dt(const scene *s);
 
+// Number of a collision layer by name, 0..31; "default" is 0, a new name takes the next. -1 +
+// core_fail when all are taken or the name is empty or too long.
+int scene_layer(scene *s, const char *name);
+const char *scene_layer_name(const scene *s, uint32_t layer); // "" when it has none
+
 // ---- models ----
 // Reads a .cmodel and what it names (meshes, materials, skeleton, clips) into the rooms; the same
 // path gives the same model again. Null + core_fail when any part is missing or bad: then nothing

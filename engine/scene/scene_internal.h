@@ -71,6 +71,7 @@ typedef struct scene_kept_setting { // given before its room was made
     char room[16], name[48], value[64];
 } scene_kept_setting;
 #define SCENE_MAX_SETTINGS 128
+#define SCENE_LAYER_NAME   32 // bytes with the terminating zero
 
 typedef struct scene_models scene_models;
 typedef struct scene_sounds scene_sounds;
@@ -98,6 +99,8 @@ struct scene {
     scene_models *models;        // made with the first one
     scene_kept_setting *setting; // [SCENE_MAX_SETTINGS], made with the first one
     uint32_t setting_count;
+    char layer[32][SCENE_LAYER_NAME]; // names of collision layers
+    uint32_t layer_count;
     uint32_t *order; // rows with a parent, parents before children; rebuilt when links change
     uint32_t order_count, order_capacity;
     uint32_t *depth_start; // [depth_capacity] counting sort's scratch

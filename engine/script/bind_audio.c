@@ -283,7 +283,7 @@ static const bind_arg source_fields[] = {
      .optional = true},
     {"paused", BIND_BOOL, BIND_AT(source_options, paused), "waits for play", .optional = true},
     {"group", BIND_STRING, BIND_AT(source_options, group), "whose loudness it shares",
-     .optional = true, .def_text = "\"effects\""},
+     .optional = true, .def_text = "effects"},
     {0}};
 
 static const bind_arg listener_fields[] = {

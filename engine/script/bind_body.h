@@ -19,7 +19,7 @@ typedef struct bind_body_options {
     int type;
     core_vec3 velocity, angular_velocity;
     float linear_damping, angular_damping, gravity_scale;
-    int64_t layer;
+    const char *layer; // NULL: "default"
 } bind_body_options;
 
 extern const bind_arg bind_body_fields[];
@@ -27,8 +27,9 @@ extern const bind_arg bind_body_fields[];
 enum { BIND_SHAPES_MAX = 256 };
 // Fills the room's descriptions: `out` for the body (pose left alone), shapes[BIND_SHAPES_MAX] and
 // their number. Raises a Lua error when fields do not fit the shape.
-uint32_t bind_body_read(lua_State *L, const char *owner, const bind_body_options *options,
-                        phys_body_desc *out, phys_shape_desc *shapes);
+uint32_t bind_body_read(script *s, lua_State *L, const char *owner,
+                        const bind_body_options *options, phys_body_desc *out,
+                        phys_shape_desc *shapes);
 // Size that a built-in unit mesh takes to look like the body's first shape.
 core_vec3 bind_body_mesh_scale(const bind_body_options *options);
 

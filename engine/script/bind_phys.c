@@ -1,5 +1,6 @@
 // corsac.phys: bodies.
 #include "script/bind_body.h"
+#include "script/bind_region.h"
 #include "script/internal.h"
 
 #include <stdio.h>
@@ -120,8 +121,8 @@ static const bind_arg shape_fields[] = {
         {"gravityScale",      BIND_FLOAT,       BIND_AT(bind_body_options, gravity_scale),         \
          "factor on gravity", .optional = true, .def = 1},                                         \
     {                                                                                              \
-        "layer", BIND_INT, BIND_AT(bind_body_options, layer), "collision layer", NULL,             \
-            BIND_BETWEEN, .max = 31, .optional = true                                              \
+        "layer", BIND_STRING, BIND_AT(bind_body_options, layer), "name of its collision layer",    \
+            .optional = true, .def_text = "default"                                                \
     }
 
 const bind_arg bind_body_fields[] = {BODY_FIELDS, {0}};
@@ -171,7 +172,7 @@ static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_sh
     return d;
 }
 
-uint32_t bind_body_read(lua_State *L, const char *owner, const bind_body_options *o,
+uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_body_options *o,
                         phys_body_desc *out, phys_shape_desc *shapes) {
     out->type = (phys_body_type)o->type;
     out->velocity = o->velocity;
@@ -179,7 +180,7 @@ uint32_t bind_body_read(lua_State *L, const char *owner, const bind_body_options
     out->linear_damping = o->linear_damping;
     out->angular_damping = o->angular_damping;
     out->gravity_scale = o->gravity_scale;
-    out->layer = (uint32_t)o->layer;
+    out->layer = o->layer ? bind_layer(s, L, o->layer) : 0;
     if (o->shapes.count == 0) {
         shapes[0] = read_shape(L, owner, &o->shape);
         return 1;
@@ -217,6 +218,23 @@ core_vec3 bind_body_mesh_scale(const bind_body_options *options) {
 static bool body_alive(script *s, core_handle h) {
     phys_world *world = scene_phys_if(s->scene);
     return world && phys_body_alive(world, h);
+}
+
+typedef struct layer_args {
+    core_handle self;
+    const char *name;
+} layer_args;
+static int set_layer(script *s, lua_State *L, void *args) {
+    const layer_args *a = args;
+    if (!phys_body_set_layer(scene_phys(s->scene), a->self, bind_layer(s, L, a->name))) {
+        bind_fail(L);
+    }
+    return 0;
+}
+static int get_layer(script *s, lua_State *L, void *args) {
+    uint32_t layer = phys_body_layer(scene_phys(s->scene), *(core_handle *)args);
+    lua_pushstring(L, scene_layer_name(s->scene, layer));
+    return 1;
 }
 
 typedef struct impulse_args {
@@ -355,6 +373,11 @@ static const bind_fn body_methods[] = {
     GETTER("getAngularVelocity", "Angular velocity in the world's frame.", "rad/s",
            get_angular_velocity),
     SETTER("setAngularVelocity", "Sets the angular velocity.", "rad/s", set_angular_velocity),
+    {"setLayer", "Moves it to another collision layer.",
+     BIND_ARGS({"name", BIND_STRING, BIND_AT(layer_args, name), "a new name makes a layer"}), NULL,
+     sizeof(layer_args), BIND_SIM, .mod = true, .cost = 10, .run = set_layer},
+    {"getLayer", "Name of its collision layer.", NULL, BIND_RETURNS({"name", "string", NULL}),
+     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 4, .run = get_layer},
     SETTER("applyForce", "Pushes at its centre of mass during the next step.", "N", apply_force),
     {"applyImpulse", "Changes its momentum at once.",
      BIND_ARGS({"x", BIND_NUMBER, BIND_AT(impulse_args, x), "", "N s"},
@@ -409,7 +432,7 @@ static int new_body(script *s, lua_State *L, void *args) {
     const new_body_args *a = &((new_body_call *)args)->options;
     phys_body_desc desc = phys_body_desc_default();
     phys_shape_desc shapes[BIND_SHAPES_MAX];
-    uint32_t count = bind_body_read(L, "corsac.phys.newBody", &a->body, &desc, shapes);
+    uint32_t count = bind_body_read(s, L, "corsac.phys.newBody", &a->body, &desc, shapes);
     desc.position = a->position;
     desc.rotation = a->rotation;
     phys_body body = phys_body_create(scene_phys(s->scene), &desc, shapes, count);
@@ -472,7 +495,10 @@ static const bind_fn functions[] = {
     {0}};
 
 static const bind_module modules[] = {
-    {"corsac.phys", "Rigid bodies: metres, kilograms, seconds, radians.", functions}, {0}};
-static const bind_type *const types[] = {&bind_body_type, NULL};
+    {"corsac.phys", "Rigid bodies: metres, kilograms, seconds, radians.", functions},
+    {"corsac.phys", "", bind_region_functions},
+    {0}};
+static const bind_type *const types[] = {&bind_body_type, &bind_trigger_type, &bind_field_type,
+                                         NULL};
 
 const bind_room bind_phys_room = {"phys", modules, types};

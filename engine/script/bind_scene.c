@@ -35,7 +35,8 @@ static int spawn(script *s, lua_State *L, void *args) {
     if (o->has_body) {
         desc.body = &body;
         desc.shapes = shapes;
-        desc.shape_count = bind_body_read(L, "corsac.scene.spawn: body", &o->body, &body, shapes);
+        desc.shape_count =
+            bind_body_read(s, L, "corsac.scene.spawn: body", &o->body, &body, shapes);
         desc.draw_scale = bind_body_mesh_scale(&o->body);
     }
     desc.model = o->model;

@@ -137,6 +137,11 @@ static void add_function(text *t, const char *owner, const char *join, const bin
     add(t, fn->returns ? ".\n\n" : "");
 }
 
+// Further functions of the module before, declared in a file of their own.
+static bool continues(const bind_room *room, const bind_module *m) {
+    return m > room->modules && strcmp(m[-1].path, m->path) == 0;
+}
+
 char *bind_docs_markdown(void) {
     text t = {0};
     add(&t, "# Lua API\n\nWritten by `make docs` from the tables that check the calls "
@@ -144,7 +149,9 @@ char *bind_docs_markdown(void) {
             "left out. What a function may not be called from is an error that says so.\n\n");
     for (int r = 0; bind_rooms[r]; r++) {
         for (const bind_module *m = bind_rooms[r]->modules; m->path; m++) {
-            add(&t, "## %s\n\n%s\n\n", m->path, m->doc);
+            if (!continues(bind_rooms[r], m)) {
+                add(&t, "## %s\n\n%s\n\n", m->path, m->doc);
+            }
             for (const bind_fn *fn = m->functions; fn->name; fn++) {
                 add_function(&t, m->path, ".", fn);
             }
@@ -261,6 +268,29 @@ static void add_stub(text *t, const char *owner, const char *join, const bind_fn
     add(t, ") end\n\n");
 }
 
+static void add_stub_module(text *t, const bind_module *m) {
+    bool root = strcmp(m->path, "corsac") == 0;
+    const bind_fn *fn = m->functions;
+    add(t, "---%s\n", m->doc);
+    for (; fn->name && fn->name[0]; fn++) {
+    }
+    if (root) {
+        add(t, "---@class corsac\n---@field load? fun(args: string[])\n"
+               "---@field fixed? fun(dt: number)\n---@field update? fun(dt: number)\n"
+               "---@field draw? fun()\n---@field event? fun(name: string, ...)\n"
+               "---@field quit? fun()\n---@field conf? fun(t: table)\n"
+               "---@field reload? fun(state: table)\n");
+    } else if (fn->name) { // callable: overload of the module itself
+        add(t, "---@class %s\n---@overload fun(", m->path);
+        for (const bind_arg *arg = fn->args; arg && arg->name; arg++) {
+            add(t, "%s%s: ", arg == fn->args ? "" : ", ", arg->name);
+            add_stub_type(t, m->path, arg);
+        }
+        add(t, ")\n");
+    }
+    add(t, "%s = {}\n\n", m->path);
+}
+
 char *bind_docs_stubs(void) {
     text t = {0};
     add(&t,
@@ -282,27 +312,10 @@ char *bind_docs_stubs(void) {
     }
     for (int r = 0; bind_rooms[r]; r++) {
         for (const bind_module *m = bind_rooms[r]->modules; m->path; m++) {
-            bool root = strcmp(m->path, "corsac") == 0;
-            const bind_fn *fn = m->functions;
-            add(&t, "---%s\n", m->doc);
-            for (; fn->name && fn->name[0]; fn++) {
+            if (!continues(bind_rooms[r], m)) {
+                add_stub_module(&t, m);
             }
-            if (root) {
-                add(&t, "---@class corsac\n---@field load? fun(args: string[])\n"
-                        "---@field fixed? fun(dt: number)\n---@field update? fun(dt: number)\n"
-                        "---@field draw? fun()\n---@field event? fun(name: string, ...)\n"
-                        "---@field quit? fun()\n---@field conf? fun(t: table)\n"
-                        "---@field reload? fun(state: table)\n");
-            } else if (fn->name) { // callable: overload of the module itself
-                add(&t, "---@class %s\n---@overload fun(", m->path);
-                for (const bind_arg *arg = fn->args; arg && arg->name; arg++) {
-                    add(&t, "%s%s: ", arg == fn->args ? "" : ", ", arg->name);
-                    add_stub_type(&t, m->path, arg);
-                }
-                add(&t, ")\n");
-            }
-            add(&t, "%s = {}\n\n", m->path);
-            for (fn = m->functions; fn->name; fn++) {
+            for (const bind_fn *fn = m->functions; fn->name; fn++) {
                 if (fn->name[0]) {
                     add_stub(&t, m->path, ".", fn);
                 }

@@ -56,6 +56,7 @@ typedef struct script_conf {
 bool script_load_file(script *s, const char *virtual_path, script_conf *conf);
 bool script_load(script *s);              // corsac.load(args)
 void script_fixed(script *s, float dt);   // corsac.fixed
+void script_step_events(script *s);       // callbacks of triggers, after physics
 void script_update(script *s, double dt); // corsac.update
 void script_draw(script *s);              // corsac.draw
 void script_event(script *s, const char *name, const char *text, const double *values, int count);

@@ -136,6 +136,14 @@ function Body:getAngularVelocity() end
 ---@param z number
 function Body:setAngularVelocity(x, y, z) end
 
+---Moves it to another collision layer.
+---@param name string a new name makes a layer
+function Body:setLayer(name) end
+
+---Name of its collision layer.
+---@return string name
+function Body:getLayer() end
+
 ---Pushes at its centre of mass during the next step.
 ---@param x number
 ---@param y number
@@ -165,6 +173,26 @@ function Body:isDestroyed() end
 
 ---Removes it from the world.
 function Body:destroy() end
+
+---A region that reports bodies and pushes nothing.
+---@class corsac.Trigger
+local Trigger = {}
+
+---Moves it.
+---@param x number
+---@param y number
+---@param z number
+function Trigger:setPosition(x, y, z) end
+
+---Removes it; bodies inside get their exit at the next step.
+function Trigger:destroy() end
+
+---An acceleration that acts on bodies.
+---@class corsac.Field
+local Field = {}
+
+---Removes it.
+function Field:destroy() end
 
 ---A source of light.
 ---@class corsac.Light
@@ -722,7 +750,7 @@ corsac.scene = {}
 ---@field linearDamping? number loss of velocity, 1/s
 ---@field angularDamping? number loss of angular velocity, 1/s
 ---@field gravityScale? number factor on gravity
----@field layer? integer collision layer
+---@field layer? string name of its collision layer
 
 ---@class corsac.scene.spawn.options
 ---@field position? number[] in its parent's frame, m
@@ -796,7 +824,7 @@ function corsac.phys.getGravity() end
 ---@field linearDamping? number loss of velocity, 1/s
 ---@field angularDamping? number loss of angular velocity, 1/s
 ---@field gravityScale? number factor on gravity
----@field layer? integer collision layer
+---@field layer? string name of its collision layer
 ---@field position? number[] origin, m
 ---@field rotation? number[]|corsac.AxisAngle
 
@@ -816,6 +844,52 @@ function corsac.phys.columns(options) end
 ---How many bodies the world has.
 ---@return integer count
 function corsac.phys.getBodyCount() end
+
+---Whether bodies of two layers collide; without a rule they do.
+---@param a string layer; a new name makes one (at most 32)
+---@param b string layer, also the same one
+---@param collide boolean from the next step
+function corsac.phys.setCollisionRule(a, b, collide) end
+
+---Whether bodies of two layers collide.
+---@param a string layer; a new name makes one (at most 32)
+---@param b string layer, also the same one
+---@return boolean collide
+function corsac.phys.getCollisionRule(a, b) end
+
+---@class corsac.phys.newTrigger.options
+---@field shape? "sphere"|"box" form of the region
+---@field size? number|number[] box: lengths of its edges, m
+---@field radius? number sphere, m
+---@field position? number[] of its centre, m
+---@field rotation? number[]|corsac.AxisAngle box
+---@field layer? string sees only bodies of this layer; without, all
+---@field onEnter? function called with body and trigger, once a visit
+---@field onStay? function in every step between
+---@field onExit? function once a visit; body is nil when it was destroyed
+
+---Makes a region that calls back when bodies come and go.
+---@param options corsac.phys.newTrigger.options the trigger
+---@return corsac.Trigger trigger
+function corsac.phys.newTrigger(options) end
+
+---@class corsac.phys.newField.options
+---@field type? "uniform"|"point" kind of field
+---@field acceleration? number[] uniform, m/s^2
+---@field center? number[] point: what it pulls towards, m
+---@field strength? number point: acceleration times distance squared; negative repels, m^3/s^2
+---@field core? number point: inside this distance the pull falls to zero, m
+---@field shape? "sphere"|"box" acts only inside this region
+---@field size? number|number[] box: lengths of its edges, m
+---@field radius? number sphere, m
+---@field position? number[] of the region's centre, m
+---@field rotation? number[]|corsac.AxisAngle box
+---@field layer? string acts only on bodies of this layer; without, on all
+
+---Makes a force field.
+---@param options corsac.phys.newField.options the field
+---@return corsac.Field field
+function corsac.phys.newField(options) end
 
 ---Camera, lights and what is drawn over the frame.
 corsac.gfx = {}
