@@ -97,9 +97,10 @@ fmt: ## lay out the C sources
 	@tools/setup.sh lint
 	@git ls-files -co --exclude-standard '*.c' '*.h' | xargs -r clang-format -i
 
-docs: $(OUT)/corsac-apidoc ## docs/api.md and the editor stubs, from the tables of bindings
+docs: $(OUT)/corsac-apidoc ## docs/api.md, the editor stubs; charts and stability maps of the last full lab run
 	@$(OUT)/corsac-apidoc markdown >docs/api.md
 	@$(OUT)/corsac-apidoc stubs >scripts/types/corsac.lua
+	@python3 tools/lab/publish.py
 
 ##@ Keep
 .PHONY: install clean distclean

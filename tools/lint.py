@@ -3,7 +3,7 @@
 
     tools/lint.py [CHECK...]      all checks, or only those named
 
-Checks: format, lua, python, length, rooms, lua_h, headers, flags, words, links, report, shell.
+Checks: format, lua, python, length, rooms, lua_h, headers, flags, words, links, report, shell, lab.
 """
 
 import ast
@@ -191,6 +191,13 @@ def check_report():
     code, text = output_of([sys.executable, "tools/report_table.py", "--check"])
     if code != 0:
         yield from text.splitlines()
+
+
+def check_lab():
+    """Committed charts and stability maps are of the present experiment files."""
+    sys.path.insert(0, str(ROOT / "tools/lab"))
+    import publish
+    yield from publish.stale()
 
 
 def main():

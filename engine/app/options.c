@@ -290,7 +290,9 @@ bool app_options_parse(app_options *o, int argc, const char *const *argv) {
             o->scene = argv[i];
         }
     }
-    return combination_ok(o);
+    char substeps[64];
+    snprintf(substeps, sizeof substeps, "phys.substeps=%llu", (unsigned long long)o->substeps);
+    return combination_ok(o) && (!o->substeps || read_set(o, NULL, substeps));
 }
 
 void app_options_help(void) {

@@ -4,6 +4,6 @@
 
 #include "core/lab.h"
 
-extern const core_lab_kernel phys_lab_motion;
+extern const core_lab_kernel phys_lab_motion, phys_lab_broad;
 
 #endif

@@ -125,13 +125,14 @@ def write_results(args, result):
     folder = args.out / exp.name
     if "map" in result:
         chart.draw_map(exp, result["map"], folder / exp.name)
+        result["map"]["sentence"] = result["sentence"]
         (folder / "map.json").write_text(json.dumps(result["map"], indent=1) + "\n")
         result["charted"] = True
         return
     if (exp.error and exp.cost) or "x" in exp.chart:
         chart.draw(exp, result["rows"], folder / exp.name)
         result["charted"] = True
-    data = {"experiment": exp.name, "digest": exp.digest, "title": exp.title, "sentence": result["sentence"],
+    data = {"experiment": exp.name, "digest": exp.digest, "quick": args.quick and exp.shortened, "title": exp.title, "sentence": result["sentence"],
             "machine": machine_facts(), "rows": [{k: v for k, v in r.items() if k != "figures"} for r in result["rows"]],
             "expectations": [{"rule": rule, "problems": problems} for rule, problems in result["checks"]],
             "broken": result["broken"]}

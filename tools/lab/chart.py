@@ -27,7 +27,13 @@ def panels_of(exp, rows):
     name = exp.chart.get("panel")
     if not name:
         return [("", rows)]
-    return [(f"{name} = {v}", [r for r in rows if r["point"].get(name) == v]) for v in exp.sweep[name]]
+    return [(f"{name} = {shown_value(name, v)}", [r for r in rows if r["point"].get(name) == v])
+            for v in exp.sweep[name]]
+
+
+def shown_value(name, value):
+    """Step lengths as fractions of a second."""
+    return f"1/{round(1 / value)} s" if name == "dt" and value < 1 else value
 
 
 def style(exp, label):
@@ -126,30 +132,53 @@ def draw(exp, rows, path):
     for ax in list(axes.flat)[len(panels):]:
         ax.set_visible(False)
     handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(4, max(1, len(labels))), frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncols=max(1, min(len(labels), 2 * columns)),
+                  frameon=False)
     figure.suptitle(exp.title)
     save(figure, path)
 
 
+VERDICTS = {"stable": "#d9ead9", "explodes": "#7a0c0c", "falls": "#7a0c0c", "tunnels": "#7a0c0c", "sinks": "#d1495b",
+            "drifts": "#edae49", "gains energy": "#d1495b", "loses energy": "#00798c", "oscillates": "#9c89b8"}
+
+
+def share(axis, value):
+    """Place of a value on its axis, 0 to 1."""
+    lo, hi = axis["lo"], axis["hi"]
+    return math.log(value / lo) / math.log(hi / lo) if axis.get("log") else (value - lo) / (hi - lo)
+
+
+def shade(ax, exp, samples, cells=120):
+    """Colours every place by its nearest sample, lightly."""
+    places = [(share(exp.map["x"], s["x"]), share(exp.map["y"], s["y"]), s["verdict"]) for s in samples]
+    names = list(VERDICTS)
+    grid = [[names.index(min(places, key=lambda p: (p[0] - (i + 0.5) / cells) ** 2 + (p[1] - (j + 0.5) / cells) ** 2)[2])
+             for i in range(cells)] for j in range(cells)]
+    edges = [[(axis["lo"] * (axis["hi"] / axis["lo"]) ** (i / cells) if axis.get("log")
+               else axis["lo"] + (axis["hi"] - axis["lo"]) * i / cells) for i in range(cells + 1)]
+             for axis in (exp.map["x"], exp.map["y"])]
+    ax.pcolormesh(edges[0], edges[1], grid, cmap=ListedColormap(VERDICTS.values()), vmin=-0.5,
+                  vmax=len(names) - 0.5, alpha=0.45, rasterized=True, linewidth=0)
+
+
 def draw_map(exp, result, path):
     """Where each method fails: one panel a method, colour = the first criterion that failed."""
-    criteria = ["stable"] + [c["name"] for c in exp.map["criteria"]]
-    colours = ListedColormap(["#cfe8cf", "#7a0c0c", "#d1495b", "#edae49", "#00798c", "#3d405b", "#9c89b8"][:len(criteria)])
     methods = list(result["methods"])
-    figure, axes = plt.subplots(1, len(methods), figsize=(4.4 * len(methods) + 0.8, 4.4), squeeze=False,
+    seen = [n for n in VERDICTS if any(s["verdict"] == n for m in methods for s in result["methods"][m]["samples"])]
+    figure, axes = plt.subplots(1, len(methods), figsize=(4.4 * len(methods) + 0.8, 4.6), squeeze=False,
                                 layout="constrained")
     for ax, label in zip(axes.flat, methods):
         samples = result["methods"][label]["samples"]
-        for index, name in enumerate(criteria):
-            mine = [s for s in samples if s["verdict"] == name]
-            if mine:
-                ax.scatter([s["x"] for s in mine], [s["y"] for s in mine], color=colours(index), s=22, label=name,
-                           marker="s" if name == "stable" else "o", edgecolors="black", linewidths=0.2)
         for axis, set_scale in (("x", ax.set_xscale), ("y", ax.set_yscale)):
             if exp.map[axis].get("log"):
                 set_scale("log")
+        shade(ax, exp, samples)
+        for name in seen:
+            mine = [s for s in samples if s["verdict"] == name]
+            ax.scatter([s["x"] for s in mine], [s["y"] for s in mine], color=VERDICTS[name], s=20, label=name,
+                       marker="s" if name == "stable" else "o", edgecolors="black", linewidths=0.3)
         ax.set(xlabel=exp.map["x"].get("label", exp.map["x"]["name"]),
                ylabel=exp.map["y"].get("label", exp.map["y"]["name"]), title=label)
-        ax.legend(loc="best", fontsize=7)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, frameon=False)
     figure.suptitle(exp.title)
     save(figure, path)

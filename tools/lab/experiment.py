@@ -4,10 +4,12 @@ title, question       texts of the report
 kernel | scene        a lab kernel (`corsac lab-run --list`) or a Lua scene run headless
 quick                 true: part of `LAB=quick`; docs: true: its chart is copied to docs/charts
 [fixed]               parameters of every case (scenes: `steps`, and `--set` names)
-[methods.LABEL]       parameters of a method; `baseline = true`, `peer = true` mark it on charts
+[methods.LABEL]       parameters of a method; `baseline = true`, `peer = true` mark it on charts;
+                      `rename = {a = "b"}` gives the method the swept parameter a under the name b
 [sweep]               NAME = [values]: the full grid; [quick_sweep] replaces lists for LAB=quick
 [error], [cost]       key (of the kernel's or metrics' figures), unit, label; a cost key "cpu_ms_per_step"
-                      is the process CPU time of the run divided by its steps
+                      is the process CPU time of the run divided by its steps, "cpu_ms_per_s" by the
+                      simulated seconds
 seeds, repeats        of accuracy and of timing
 [chart]               panel = sweep name (one panel each), line = "method" (default), x, y
 [[expect]]            assertions, see judge.py
@@ -52,6 +54,7 @@ class Experiment:
     digest: str
     binaries: dict = field(default_factory=dict)
     reference: str | None = None
+    shortened: bool = False  # has a [quick_sweep]
 
     def points(self):
         """(method label, sweep values) for every row of the result."""
@@ -62,8 +65,10 @@ class Experiment:
 
     def params(self, label, point, seed):
         """All parameters of one case."""
-        method = {k: v for k, v in self.methods[label].items() if k not in ("baseline", "peer", "binary")}
-        return {**self.fixed, **method, **point, "seed": seed}
+        mine = self.methods[label]
+        method = {k: v for k, v in mine.items() if k not in ("baseline", "peer", "binary", "rename")}
+        names = mine.get("rename", {})
+        return {**self.fixed, **method, **{names.get(k, k): v for k, v in point.items()}, "seed": seed}
 
 
 def load(path, quick=False):
@@ -95,4 +100,4 @@ def load(path, quick=False):
         repeats=raw.get("repeats", 3), chart=raw.get("chart", {}), expect=raw.get("expect", []),
         map=raw.get("map", {}), quick=raw.get("quick", False), docs=raw.get("docs", False),
         digest=hashlib.sha256(text).hexdigest()[:16], binaries=raw.get("binaries", {}),
-        reference=raw.get("reference"))
+        reference=raw.get("reference"), shortened="quick_sweep" in raw)

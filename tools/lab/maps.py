@@ -3,7 +3,8 @@
 [map] x, y = {name, lo, hi, log, integer, label}; grid = cells a side of the first grid (default 6);
 depth = times that cells on the border are halved (default 3);
 criteria = [{name, key, op, value}]: the first that a run fulfils is its verdict, else "stable"; a run
-that breaks down or lacks the key has the verdict of the first criterion.
+that breaks down or lacks the key has the verdict of the first criterion. Names are explodes, falls,
+tunnels, sinks, drifts, gains energy, loses energy, oscillates.
 """
 
 import math

@@ -21,16 +21,17 @@ def command_of(corsac, exp, params, timed):
         if timed:
             case["timed"] = 1
         return [corsac, "lab-run", exp.kernel, "--case", json.dumps(case, sort_keys=True)]
+    length = ["--seconds", str(params["seconds"])] if "seconds" in params else ["--steps", str(params.get("steps", 600))]
     words = [corsac, "run", exp.scene, "--headless", "--quiet", "--metrics", "-",
              "--threads", str(params.get("threads", 1)), "--simd", params.get("simd", "auto"),
-             "--seed", str(params["seed"]), "--steps", str(params.get("steps", 600))]
+             "--seed", str(params["seed"]), *length]
     for key in ("substeps", "dt"):
         if key in params:
             words += [f"--{key}", str(params[key])]
     for key, value in params.items():
-        if key not in ("threads", "simd", "seed", "steps", "substeps", "dt"):
+        if key not in ("threads", "simd", "seed", "steps", "seconds", "substeps", "dt"):
             words += ["--set", f"{key}={value}"]
-    return words
+    return words + (["--set", "metrics.accuracy=off"] if timed else [])
 
 
 def flatten(tree, prefix=""):
@@ -62,7 +63,7 @@ def execute(words, timeout=600):
 
 
 def execute_timed(words):
-    """As execute, alone, with the CPU time of the process per step."""
+    """As execute, alone, with the CPU time of the process per step and per simulated second."""
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         out = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
@@ -72,6 +73,7 @@ def execute_timed(words):
     figures = flatten(json.loads(out))
     if figures.get("steps"):
         figures["cpu_ms_per_step"] = 1e3 * (usage.ru_utime + usage.ru_stime) / figures["steps"]
+        figures["cpu_ms_per_s"] = figures["cpu_ms_per_step"] / figures["dt"]
     return figures
 
 
