@@ -6,6 +6,7 @@ int app_command_run(int argc, const char *const *argv);
 int app_command_new(int argc, const char *const *argv);
 int app_command_convert(int argc, const char *const *argv);
 int app_command_info(int argc, const char *const *argv);
+int app_command_compare(int argc, const char *const *argv);
 int app_command_lab(int argc, const char *const *argv);
 int app_command_lab_run(int argc, const char *const *argv);
 

@@ -36,6 +36,11 @@ bool app_frame(app_run *r, float alpha) {
     script_draw(r->script);
     core_stage_end(r->metrics, CORE_STAGE_SCRIPT);
     scene_sync_draw(r->scene, alpha);
+    if (r->caption) {
+        const float ink[4] = {1.0f, 1.0f, 1.0f, 1.0f}, back[4] = {0, 0, 0, 0.6f};
+        gfx_rect(world, 0, 0, (float)r->width, 62.0f, back);
+        gfx_print(world, 10, 6, 17.0f, ink, r->caption);
+    }
     if (r->overlay) {
         scene_counts(r->scene);
         gfx_overlay(world, r->metrics);

@@ -4,5 +4,11 @@
 #include "phys/lab.h"
 
 const core_lab_kernel *const app_lab_kernels[] = {
-    &core_lab_math, &core_lab_layout, &phys_lab_motion, &phys_lab_broad, &gfx_lab_cluster, &gfx_lab_frame, NULL,
+    &core_lab_math,
+    &core_lab_layout,
+    &phys_lab_motion,
+    &phys_lab_broad,
+    &gfx_lab_cluster,
+    &gfx_lab_frame,
+    NULL,
 };

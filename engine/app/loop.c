@@ -139,9 +139,16 @@ static bool between_steps(app_run *r) {
     return true;
 }
 
-static void headless_loop(app_run *r) {
-    while (between_steps(r)) {
+bool app_step(app_run *r) {
+    bool more = between_steps(r);
+    if (more) {
         step(r);
+    }
+    return more;
+}
+
+static void headless_loop(app_run *r) {
+    while (app_step(r)) {
         app_progress(r);
         if (r->report.steps % 32 == 0) {
             watch(r);

@@ -16,6 +16,8 @@ static const command commands[] = {
     {"new", "DIR", "make a project that runs", app_command_new},
     {"convert", "IN OUT_DIR [--dry-run]", "a model to the engine's files", app_command_convert},
     {"info", "", "versions, instruction sets, graphics", app_command_info},
+    {"compare", "SCENE --a NAME=VALUE... --b ...", "a scene twice: mm and ms apart, a picture",
+     app_command_compare},
     {"lab", "[NAME...] [--quick] [--out DIR]", "chart speed against accuracy", app_command_lab},
     {"lab-run", "NAME [--case JSON]", "run one lab kernel on one case", app_command_lab_run},
 };

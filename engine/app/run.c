@@ -392,39 +392,19 @@ static int exit_code(const app_run *r) {
     return r->expectations_missed ? APP_EXIT_EXPECTATION : r->exit_code;
 }
 
-static void run(app_run *r) {
-    if (!mount_files(r)) {
-        return;
+bool app_run_open(app_run *r) {
+    if (r->failed != APP_EXIT_FINE || !mount_files(r)) {
+        return false;
     }
     bool begun = app_scene_open(r);
     if (begun) {
         end_of_run(r);
         begun = open_outputs(r);
     }
-    if (begun) {
-        app_loop(r);
-    }
-    begun = begun || r->failed == APP_EXIT_SCRIPT;
-    app_scene_close(r);
-    if (begun) {
-        write_results(r);
-    }
+    return begun;
 }
 
-static void release(app_run *r) {
-    if (r->device) {
-        gfx_device_destroy(r->device);
-    }
-    app_replay_close(r->replay);
-    core_log_remove_sink(on_log, &r->report);
-    core_metrics_destroy(r->metrics);
-    core_jobs_destroy(r->jobs);
-    core_vfs_destroy(r->vfs);
-    app_report_release(&r->report);
-    core_free(r->run_data);
-}
-
-static int run_main(const app_options *opt) {
+app_run *app_run_create(const app_options *opt) {
     app_run *r = core_alloc(sizeof *r);
     r->opt = opt;
     r->time_scale = 1.0f;
@@ -445,12 +425,38 @@ static int run_main(const app_options *opt) {
         app_fail(r, APP_EXIT_USAGE);
     } else if (choose_simd(r) && start_of(r)) {
         strcpy(r->entry, r->path.entry);
-        run(r);
     }
+    return r;
+}
+
+int app_run_destroy(app_run *r) {
     int code = exit_code(r);
-    release(r);
+    if (r->device) {
+        gfx_device_destroy(r->device);
+    }
+    app_replay_close(r->replay);
+    core_log_remove_sink(on_log, &r->report);
+    core_metrics_destroy(r->metrics);
+    core_jobs_destroy(r->jobs);
+    core_vfs_destroy(r->vfs);
+    app_report_release(&r->report);
+    core_free(r->run_data);
     core_free(r);
     return code;
+}
+
+static int run_main(const app_options *opt) {
+    app_run *r = app_run_create(opt);
+    bool begun = app_run_open(r);
+    if (begun) {
+        app_loop(r);
+    }
+    begun = begun || (r->scene && r->failed == APP_EXIT_SCRIPT);
+    app_scene_close(r);
+    if (begun) {
+        write_results(r);
+    }
+    return app_run_destroy(r);
 }
 
 int app_command_run(int argc, const char *const *argv) {

@@ -56,11 +56,16 @@ typedef struct app_run {
     int exit_code;
     char next_scene[256]; // "": stay
     char *run_data;       // JSON from the former scene to the next, NULL: none
+    const char *caption;  // drawn over every frame, NULL: none
     uint64_t watch_stamp;
     app_exit failed; // first reason that ended the run, APP_EXIT_FINE: none
 } app_run;
 
-// run.c
+// run.c: create never gives NULL; r->failed says why it cannot be opened. destroy gives the exit
+// code and closes no scene: call app_scene_close before.
+app_run *app_run_create(const app_options *opt);
+bool app_run_open(app_run *r); // files, scene, outputs
+int app_run_destroy(app_run *r);
 bool app_scene_open(app_run *r);  // false: r->failed says why
 void app_scene_close(app_run *r); // quit callback, expectations
 bool app_interrupted(void);
@@ -69,6 +74,7 @@ bool app_fail(app_run *r, app_exit why); // keeps the first; false
 script_host app_host(app_run *r);
 // loop.c
 void app_loop(app_run *r);
+bool app_step(app_run *r); // one step; false when the run is over
 // frame.c
 bool app_device_open(app_run *r, bool window);
 bool app_frame(app_run *r, float alpha); // draws the scene and the overlay

@@ -63,9 +63,7 @@ typedef struct broad_run {
 
 // The scene is turned so that the sweep, which runs along x, meets another axis of the layout.
 static core_vec3 turned(core_vec3 p, const char *axis) {
-    return axis[0] == 'y'   ? core_v3(p.y, p.z, p.x)
-           : axis[0] == 'z' ? core_v3(p.z, p.x, p.y)
-                            : p;
+    return axis[0] == 'y' ? core_v3(p.y, p.z, p.x) : axis[0] == 'z' ? core_v3(p.z, p.x, p.y) : p;
 }
 
 static bool fill(broad_run *r, const struct layout *l, uint32_t n, const char *axis) {
