@@ -1,5 +1,6 @@
--- A ball of radius 0.05 m, or a cube of that half width, shot at a wall of some thickness at some speed; whether it came
--- through. Its first distance differs from shot to shot, so that no step size is lucky.
+-- A ball of radius 0.05 m, or a cube of that half width, shot at a wall of some thickness at some
+-- speed; whether it came through. The first distance differs from shot to shot, so that no step size
+-- is lucky.
 local speed = corsac.param("speed", 50)
 local thick = corsac.param("thick", 0.1) -- m
 local box = corsac.param("box", false)

@@ -33,7 +33,7 @@ function corsac.quit()
     local lost = 0
     for _, ball in ipairs(balls) do
         local _, y = ball:getPosition()
-        if not (y > 0) then lost = lost + 1 end
+        if y <= 0 or y ~= y then lost = lost + 1 end
     end
     corsac.metrics.set("lost", lost)
 end
