@@ -58,6 +58,15 @@ void bind_names_add(bind_names *names, const char *name) {
     }
 }
 
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+const char *bind_nearest(const char *name, bind_names *names) {
+    qsort(names->name, names->count, sizeof names->name[0], compare_names);
+    return core_nearest(name, names->name, names->count);
+}
+
 static const struct {
     unsigned phase;
     const char *name;
@@ -247,7 +256,7 @@ static int check_enum(bind_path *path, const bind_arg *arg, int index) {
     }
     char want[384];
     bind_describe(arg, want, sizeof want);
-    const char *near = core_nearest(text, names.name, names.count);
+    const char *near = bind_nearest(text, &names);
     if (near) {
         fail_at(path, "\"%.40s\" is unknown; did you mean \"%s\"?", text, near);
     }
@@ -374,7 +383,7 @@ static void check_keys(bind_path *path, const bind_arg *fields, int index) {
         n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", n ? ", " : "", field->name);
         n = CORE_MIN(n, sizeof known - 1);
     }
-    const char *near = core_nearest(wrong, names.name, names.count);
+    const char *near = bind_nearest(wrong, &names);
     if (near) {
         fail_at(path, "unknown field \"%.40s\"; did you mean \"%s\"?", wrong, near);
     }
@@ -689,10 +698,6 @@ bool bind_call_numbers(script *s, const bind_fn *fn, const bind_type *type, uint
 
 // ---- names that do not exist ----
 
-static int compare_names(const void *a, const void *b) {
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
 static int unknown_name(lua_State *L) {
     const char *owner = lua_tostring(L, lua_upvalueindex(1));
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
@@ -704,8 +709,7 @@ static int unknown_name(lua_State *L) {
             bind_names_add(&names, lua_tostring(L, -1));
         }
     }
-    qsort(names.name, names.count, sizeof names.name[0], compare_names); // ties: first by name
-    const char *near = core_nearest(name, names.name, names.count);
+    const char *near = bind_nearest(name, &names);
     if (near) {
         bind_error(L, "%s has no \"%.40s\"; did you mean \"%s\"?", owner, name, near);
     }

@@ -186,6 +186,8 @@ typedef struct bind_names {
     size_t count;
 } bind_names;
 void bind_names_add(bind_names *names, const char *name);
+// core_nearest over the list; among equals the first by name, whatever the order of adding.
+const char *bind_nearest(const char *name, bind_names *names);
 
 // Text of one argument's type with unit and range, "a number in m, > 0": errors and docs use it.
 void bind_describe(const bind_arg *arg, char *out, size_t size);

@@ -133,7 +133,7 @@ static int read_conf(lua_State *L) {
 
 static bool run_file(script *s, const char *path) {
     if (!script_load_chunk(s, s->L, path)) {
-        script_record_error(s);
+        script_record_error(s, s->L);
         return false;
     }
     return script_call(s, BIND_TOP, 0, 0);
@@ -146,18 +146,12 @@ bool script_load_file(script *s, const char *path, script_conf *conf) {
     if (folder >= sizeof s->root) {
         core_fail_quiet("%s: path longer than %d characters", path, (int)sizeof s->root - 1);
         lua_pushstring(L, core_last_error());
-        script_record_error(s);
+        script_record_error(s, s->L);
         return false;
     }
     memcpy(s->root, path, folder);
     s->root[folder] = 0;
-    if (strcmp(path + folder, "main.lua") == 0) {
-        char conf_path[220];
-        snprintf(conf_path, sizeof conf_path, "%sconf.lua", s->root);
-        if (core_vfs_exists(scene_vfs(s->scene), conf_path) && !run_file(s, conf_path)) {
-            return false;
-        }
-    }
+    snprintf(s->game, sizeof s->game, "%.*s", (int)strcspn(path + folder, "."), path + folder);
     if (!run_file(s, path)) {
         return false;
     }

@@ -48,8 +48,14 @@ struct script {
     double time;          // s of simulated time
     uint64_t seed;        // of the run
     int corsac_ref;       // the table `corsac`
+    int tick_ref;         // scripts/corsac/tasks.lua
     int error_screen_ref; // scripts/corsac/error.lua
     char root[200];       // virtual folder of the game with its '/', "" for the tree's root
+    lua_State *task;      // the coroutine of corsac.spawn that runs now; NULL: none
+    bool awake;           // tasks wait for a step
+    char game[64];        // folder name of the player's files
+    core_vfs *save;       // the player's files, made on first use
+    char *given_data;     // JSON from the former scene
 };
 
 // Lua's userdata of an object.
@@ -68,11 +74,15 @@ const char *script_embedded(const char *name, size_t *size);
 // Loads a chunk from the mounted files, else from the embedded ones; leaves the function on the
 // stack, or false with a message there.
 bool script_load_chunk(script *s, lua_State *L, const char *virtual_path);
-// Calls the function under `argc` arguments with traceback; records the error. Phase is set for
-// the call.
+// Calls the function under `argc` arguments in a phase; an error is recorded with its traceback.
 bool script_call(script *s, uint32_t phase, int argc, int results);
+// The same on any thread of the state, in the phase that runs.
+bool script_protected(script *s, lua_State *L, int argc, int results);
+// Adds nearest name and traceback to the error text on top of the stack.
+void script_push_report(const script *s, lua_State *L);
 // Records an error text (top of the stack, popped) as the run's.
-void script_record_error(script *s);
+void script_record_error(script *s, lua_State *L);
+char *script_copy_text(const char *text); // core_free it
 bool script_compare(double a, script_op op, double b);
 
 #endif

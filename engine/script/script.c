@@ -2,14 +2,13 @@
 #include "script/script.h"
 
 #include "core/log.h"
-#include "core/nearest.h"
 #include "script/internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SCRIPT_COOKIE = 0x5c21b7, SCRIPT_TRACE_LEVELS = 24 };
+enum { SCRIPT_COOKIE = 0x5c21b7 };
 
 script_desc script_desc_default(void) { return (script_desc){.cookie = SCRIPT_COOKIE}; }
 
@@ -29,6 +28,7 @@ script *script_create(const script_desc *desc) {
     s->keep_going = desc->keep_going;
     s->argc = desc->argc;
     s->argv = desc->argv;
+    s->given_data = desc->data ? script_copy_text(desc->data) : NULL;
     s->expect = core_alloc(SCRIPT_EXPECT_MAX * sizeof *s->expect);
     s->param = core_alloc(SCRIPT_PARAM_MAX * sizeof *s->param);
     s->phase = BIND_TOP;
@@ -51,115 +51,11 @@ void script_destroy(script *s) {
     core_free(s->param);
     core_free(s->last_error);
     core_free(s->run_data);
+    core_free(s->given_data);
+    if (s->save) {
+        core_vfs_destroy(s->save);
+    }
     core_free(s);
-}
-
-// ---- errors ----
-
-static char *copy_text(const char *text) {
-    size_t size = strlen(text) + 1;
-    return memcpy(core_alloc(size), text, size);
-}
-
-// "attempt to index global 'corsca' (a nil value)": names the nearest global.
-static void push_global_hint(lua_State *L, const char *message) {
-    const char *at = strstr(message, "global '");
-    const char *end = at ? strchr(at + 8, '\'') : NULL;
-    if (!end || !strstr(end, "(a nil value)")) {
-        lua_pushliteral(L, "");
-        return;
-    }
-    lua_pushlstring(L, at + 8, (size_t)(end - at - 8));
-    const char *wrong = lua_tostring(L, -1);
-    bind_names names = {.count = 0};
-    lua_pushnil(L);
-    while (lua_next(L, LUA_GLOBALSINDEX)) {
-        lua_pop(L, 1);
-        if (lua_type(L, -1) == LUA_TSTRING) {
-            bind_names_add(&names, lua_tostring(L, -1));
-        }
-    }
-    const char *near = core_nearest(wrong, names.name, names.count);
-    if (near) {
-        lua_pushfstring(L, "; did you mean '%s'?", near);
-    } else {
-        lua_pushliteral(L, "; no such global is defined");
-    }
-    lua_remove(L, -2);
-}
-
-static void push_traceback(lua_State *L, uint32_t phase) {
-    lua_Debug frame;
-    luaL_Buffer text;
-    luaL_buffinit(L, &text);
-    int lines = 0;
-    for (int level = 0; lines < SCRIPT_TRACE_LEVELS && lua_getstack(L, level, &frame); level++) {
-        char line[300];
-        lua_getinfo(L, "Sln", &frame);
-        if (frame.currentline <= 0 || strncmp(frame.source, "=corsac/", 8) == 0) {
-            continue;
-        }
-        bool main = strcmp(frame.what, "main") == 0;
-        if (frame.name && !main) {
-            snprintf(line, sizeof line, "\n    %s:%d: in '%s'", frame.short_src, frame.currentline,
-                     frame.name);
-        } else {
-            snprintf(line, sizeof line, "\n    %s:%d: in %s", frame.short_src, frame.currentline,
-                     main ? "the file's own code" : "a function");
-        }
-        luaL_addstring(&text, line);
-        lines++;
-    }
-    if (phase != BIND_TOP) {
-        luaL_addstring(&text, "\n    called as ");
-        luaL_addstring(&text, bind_phase_name(phase));
-    }
-    luaL_pushresult(&text);
-}
-
-// Message handler of every protected call.
-static int with_traceback(lua_State *L) {
-    if (lua_type(L, 1) != LUA_TSTRING) {
-        bool text = lua_type(L, 1) == LUA_TNUMBER || luaL_callmeta(L, 1, "__tostring");
-        if (!text) {
-            lua_pushfstring(L, "error raised with a %s instead of a text", luaL_typename(L, 1));
-        }
-        lua_replace(L, 1);
-        lua_settop(L, 1);
-        lua_tostring(L, 1);
-    }
-    push_global_hint(L, lua_tostring(L, 1));
-    const script *s = lua_touserdata(L, lua_upvalueindex(1));
-    push_traceback(L, s->phase);
-    lua_concat(L, 3);
-    return 1;
-}
-
-void script_record_error(script *s) {
-    const char *text = lua_tostring(s->L, -1);
-    core_free(s->last_error);
-    s->last_error = copy_text(text ? text : "error without a text");
-    s->error_count++;
-    core_log(CORE_LOG_ERROR, "%s", s->last_error);
-    lua_pop(s->L, 1);
-}
-
-bool script_call(script *s, uint32_t phase, int argc, int results) {
-    lua_State *L = s->L;
-    int base = lua_gettop(L) - argc;
-    uint32_t before = s->phase;
-    lua_pushlightuserdata(L, s);
-    lua_pushcclosure(L, with_traceback, 1);
-    lua_insert(L, base);
-    s->phase = phase;
-    s->callback_count++;
-    bool good = lua_pcall(L, argc, results, base) == 0;
-    s->phase = before;
-    lua_remove(L, base);
-    if (!good) {
-        script_record_error(s);
-    }
-    return good;
 }
 
 // ---- callbacks ----
@@ -205,6 +101,13 @@ bool script_load(script *s) {
 }
 
 void script_fixed(script *s, float dt) {
+    if (s->awake) {
+        lua_rawgeti(s->L, LUA_REGISTRYINDEX, s->tick_ref);
+        if (script_call(s, BIND_FIXED, 0, 1)) {
+            s->awake = lua_toboolean(s->L, -1);
+            lua_pop(s->L, 1);
+        }
+    }
     if (push_callback(s, "fixed", BIND_FIXED)) {
         lua_pushnumber(s->L, (double)dt);
         call_callback(s, BIND_FIXED, 1);

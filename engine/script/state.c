@@ -4,6 +4,7 @@
 #include "script/bind_body.h"
 #include "script/embedded.h"
 #include "script/fast.h"
+#include "script/files.h"
 #include "script/internal.h"
 #include "script/libc.h"
 #include "script/order.h"
@@ -95,6 +96,73 @@ static int engine_callback_count(lua_State *L) {
     return 1;
 }
 
+static int engine_dt(lua_State *L) {
+    lua_pushnumber(L, (double)scene_dt(self(L)->scene));
+    return 1;
+}
+
+static int engine_wake(lua_State *L) {
+    self(L)->awake = true;
+    return 0;
+}
+
+static int engine_set_task(lua_State *L) {
+    self(L)->task = lua_tothread(L, 1);
+    return 0;
+}
+
+static int engine_get_task(lua_State *L) {
+    lua_State *task = self(L)->task;
+    if (!task) {
+        return 0;
+    }
+    lua_pushthread(task);
+    lua_xmove(task, L, 1);
+    return 1;
+}
+
+// report(thread, message): an error that ended a coroutine.
+static int engine_report(lua_State *L) {
+    lua_State *thread = lua_tothread(L, 1);
+    lua_settop(L, 2);
+    lua_xmove(L, thread, 1);
+    script_push_report(self(L), thread);
+    lua_xmove(thread, L, 1);
+    script_record_error(self(L), L);
+    return 0;
+}
+
+// protect(fn, ...): an error is recorded, and what follows goes on.
+static int engine_protect(lua_State *L) {
+    script_protected(self(L), L, lua_gettop(L) - 1, 0);
+    return 0;
+}
+
+// near(name, table) -> '; did you mean "x"?' or ""
+static int engine_near(lua_State *L) {
+    bind_names names = {.count = 0};
+    if (lua_type(L, 1) != LUA_TSTRING) {
+        lua_pushliteral(L, "");
+        return 1;
+    }
+    lua_pushnil(L);
+    while (lua_next(L, 2)) {
+        lua_pop(L, 1);
+        if (lua_type(L, -1) == LUA_TSTRING) {
+            bind_names_add(&names, lua_tostring(L, -1));
+        }
+    }
+    const char *near = bind_nearest(lua_tostring(L, 1), &names);
+    if (near) {
+        lua_pushfstring(L, "; did you mean \"%s\"?", near);
+    } else {
+        lua_pushliteral(L, "");
+    }
+    return 1;
+}
+
+static int engine_rawmeta(lua_State *L) { return lua_getmetatable(L, 1); }
+
 static int engine_print(lua_State *L) {
     core_log(CORE_LOG_INFO, "%s", luaL_checkstring(L, 1));
     return 0;
@@ -161,6 +229,16 @@ static const luaL_Reg engine_functions[] = {{"keys", script_order_keys},
                                             {"bodyAt", engine_body_at},
                                             {"callbackCount", engine_callback_count},
                                             {"fastMethods", script_fast_methods},
+                                            {"dt", engine_dt},
+                                            {"wake", engine_wake},
+                                            {"setTask", engine_set_task},
+                                            {"getTask", engine_get_task},
+                                            {"report", engine_report},
+                                            {"protect", engine_protect},
+                                            {"near", engine_near},
+                                            {"rawmeta", engine_rawmeta},
+                                            {"saveWrite", script_save_write},
+                                            {"saveRead", script_save_read},
                                             {NULL, NULL}};
 
 static void push_engine(script *s, lua_State *L) {
@@ -209,7 +287,12 @@ lua_State *script_state_create(script *s) {
     luaL_openlibs(L);
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
-    bool good = run_part(s, L, "base") && run_part(s, L, "native") && run_part(s, L, "columns");
+    static const char *const parts[] = {"base",   "native",     "columns", "tasks",
+                                        "events", "containers", "prefab",  "save"};
+    bool good = true;
+    for (size_t i = 0; good && i < CORE_COUNT_OF(parts); i++) {
+        good = run_part(s, L, parts[i]);
+    }
     if (good) {
         bind_install(s, L, false);
         lua_getfield(L, LUA_GLOBALSINDEX, "corsac");
@@ -220,6 +303,8 @@ lua_State *script_state_create(script *s) {
         lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
         lua_getfield(L, -1, "errorScreen");
         s->error_screen_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+        lua_getfield(L, -1, "tick");
+        s->tick_ref = luaL_ref(L, LUA_REGISTRYINDEX);
         lua_pop(L, 1);
     }
     if (!good) {

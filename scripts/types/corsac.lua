@@ -717,6 +717,150 @@ function corsac.input.isDown(name) end
 ---@return number value
 function corsac.input.getAxis(name) end
 
+---Tasks of the step, events, containers.
+---@class corsac
+---@field load? fun(args: string[])
+---@field fixed? fun(dt: number)
+---@field update? fun(dt: number)
+---@field draw? fun()
+---@field event? fun(name: string, ...)
+---@field quit? fun()
+---@field conf? fun(t: table)
+---@field reload? fun(state: table)
+corsac = {}
+
+---Calls a function once, after a time rounded up to whole steps.
+---@param seconds number
+---@param fn function called in the step
+---@return corsac.Task task
+function corsac.after(seconds, fn) end
+
+---Calls a function again and again.
+---@param seconds number between calls
+---@param fn function called in the step
+---@param times? integer how often
+---@return corsac.Task task
+function corsac.every(seconds, fn, times) end
+
+---@class corsac.tween.options
+---@field length number how long it takes, s
+---@field target? table table whose numbers move
+---@field goals? table names in target and where they go
+---@field from? number first value for step
+---@field to? number last value for step
+---@field step? function called each step with the value
+---@field done? function called at the end
+---@field ease? "linear"|"smooth"|"in"|"out"|"bounce" how it moves
+
+---Moves numbers from where they are to where they should be.
+---@param options corsac.tween.options what moves, how and when
+---@return corsac.Task task
+function corsac.tween(options) end
+
+---Starts a coroutine that lives in the step: it may call corsac.wait.
+---@param fn function the coroutine's function
+---@param ... any its arguments
+---@return corsac.Task task
+function corsac.spawn(fn, ...) end
+
+---Inside corsac.spawn: goes on after a time (at least one step).
+---@param seconds? number
+function corsac.wait(seconds) end
+
+---Inside corsac.spawn: goes on in the step after an event and gives its arguments.
+---@param event string name, as given to corsac.emit
+---@return any ...
+function corsac.waitFor(event) end
+
+---Ends a timer, tween or coroutine; false when it was over.
+---@param task table what after, every, tween or spawn gave
+---@return boolean cancelled
+function corsac.cancel(task) end
+
+---Listens to an event; a listener that returns false is not called again.
+---@param name string of the event
+---@param fn function called with the event's arguments
+function corsac.on(name, fn) end
+
+---Ends listening; false when it did not listen.
+---@param name string of the event
+---@param fn function the listener
+---@return boolean found
+function corsac.off(name, fn) end
+
+---Calls an event's listeners now, in the order in which they began to listen.
+---@param name string of the event
+---@param ... any given to the listeners
+---@return integer heard
+function corsac.emit(name, ...) end
+
+---A map with any keys, walked in order of insertion: set, get, has, count, each.
+---@return corsac.Map map
+function corsac.newMap() end
+
+---A queue: push, pop, peek, count.
+---@return corsac.Queue queue
+function corsac.newQueue() end
+
+---A priority queue, lowest first, oldest among equals: push, pop, count.
+---@return corsac.Heap heap
+function corsac.newHeap() end
+
+---A table that survives hot reloads; made from the default at first.
+---@param name string of the table
+---@param default table its first contents
+---@return table state
+function corsac.persist(name, default) end
+
+---Text of a file in the game's folder.
+---@param path string relative, with /
+---@return string text
+function corsac.readFile(path) end
+
+---What the former scene gave to corsac.run, or nil.
+---@return table? data
+function corsac.getRunData() end
+
+---Prefabs.
+corsac.scene = {}
+
+---Keeps options of spawn for use again: prefab:spawn{...} with changes, prefab:with{...} for a variant; `children` lists prefab tables that hang on it.
+---@param options table as for spawn, and children
+---@return corsac.Prefab prefab
+function corsac.scene.newPrefab(options) end
+
+---Plain data as JSON.
+corsac.json = {}
+
+---JSON text of plain data; keys are sorted.
+---@param value any numbers, strings, booleans and tables of these
+---@return string text
+function corsac.json.encode(value) end
+
+---Data from JSON text.
+---@param text string JSON
+---@return any value
+function corsac.json.decode(text) end
+
+---The player's saved data: JSON files in a folder of the game's own.
+corsac.save = {}
+
+---Writes plain data to the player's folder, whole or not at all.
+---@param name string letters, digits, - and _
+---@param data table plain data
+---@param version? integer of its form
+function corsac.save.write(name, data, version) end
+
+---@class corsac.save.read.options
+---@field version? integer that this code writes
+---@field migrate? function called with older data and its version; gives data of this version
+
+---Data that was written under that name, or nil.
+---@param name string as given to write
+---@param options? corsac.save.read.options
+---@return table? data
+function corsac.save.read(name, options) end
+
 ---Entities: places in the world that carry bodies and meshes.
 corsac.scene = {}
 
