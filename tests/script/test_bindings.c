@@ -11,7 +11,19 @@
 static world w;
 static int calls;
 
-void setUp(void) { world_open(&w); }
+// A tenth of a second of silence: mono, 16 bits, 8000 Hz.
+static void write_sound(void) {
+    static const unsigned char head[44] =
+        "RIFF\x64\x06\0\0WAVEfmt \x10\0\0\0\1\0\1\0\x40\x1f\0\0\x80\x3e\0\0\2\0\x10\0data\x40\6\0";
+    unsigned char file[44 + 1600] = {0};
+    memcpy(file, head, sizeof head);
+    core_vfs_write(w.vfs, "beep.wav", file, sizeof file);
+}
+
+void setUp(void) {
+    world_open(&w);
+    write_sound();
+}
 void tearDown(void) { world_close(&w); }
 
 static unsigned any_phase(const bind_fn *fn) {
@@ -38,6 +50,8 @@ static const struct {
     {"Path", "local g = corsac.nav.newGraph{} return corsac.nav.newPath(g, {0, 0, 0}, {1, 0, 0})"},
     {"Agent", "return corsac.nav.newAgent{position = {0, 0, 0}}"},
     {"Animator", "return corsac.anim.newAnimator(" SKELETON ")"},
+    {"Sound", "return corsac.audio.newSound('beep.wav')"},
+    {"Source", "return corsac.audio.newSource{sound = corsac.audio.newSound('beep.wav')}"},
 };
 
 static const char *maker_of(const bind_type *type) {
@@ -60,6 +74,7 @@ static void push_sample(const bind_type *type) {
     lua_pop(L, 1);
     unsigned before = w.script->phase;
     w.script->phase = BIND_FIXED;
+    TEST_ASSERT_NOT_NULL_MESSAGE(maker_of(type), "a new class of objects needs a line in makers");
     TEST_ASSERT_EQUAL_INT(0, luaL_loadstring(L, maker_of(type)));
     int rc = lua_pcall(L, 0, 1, 0);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, rc, lua_tostring(L, -1));
