@@ -205,6 +205,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     }
     core_arena_rewind(&w->scratch, mark);
     w->measured = false;
+    w->trees_stale = true;
     return h;
 }
 
@@ -222,6 +223,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
         slot = next;
     }
     w->order_count = 0;
+    w->trees_stale = w->rows_stale = true;
     w->measured = false;
     return core_columns_remove(&w->bodies.set, body, NULL, NULL);
 }
@@ -289,6 +291,7 @@ bool phys_body_set_layer(phys_world *w, phys_body body, uint32_t layer) {
         return i != CORE_NO_ROW && core_fail("phys body: layer is %u, expected 0..31", layer);
     }
     w->bodies.layer[i] = (uint8_t)layer;
+    w->pairs_stale = true;
     return true;
 }
 

@@ -100,5 +100,5 @@ static void sap_find(phys_world *w) {
     core_arena_rewind(&w->scratch, mark);
 }
 
-const phys_broad_method phys_broad_brute = {"brute", brute_find};
-const phys_broad_method phys_broad_sap = {"sap", sap_find};
+const phys_broad_method phys_broad_brute = {"brute", brute_find, false};
+const phys_broad_method phys_broad_sap = {"sap", sap_find, false};

@@ -1,29 +1,27 @@
 // Narrow phase: refreshes the manifold of every near pair and carries impulses over by feature.
 #include "phys/world.h"
 
+#include "core/simd.h"
+
 #define NARROW_GRAIN 256u
 
-static void refresh_ball(phys_world *w, uint32_t i, float dt) {
+// Ball on something that does not move: closed forms, one at a time.
+static void refresh_fixed_ball(phys_world *w, uint32_t i, float dt) {
     phys_balls *c = &w->balls;
     const phys_bodies *b = &w->bodies;
-    uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
-    uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
-    uint32_t ra = w->shapes.row[sa], rb = w->shapes.row[sb];
-    c->a[i] = ra;
-    c->b[i] = rb;
-    phys_geom ga = phys_shape_geom(w, sa), gb = phys_shape_geom(w, sb);
-    core_vec3 dv =
-        core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
-    float reach = PHYS_MARGIN + core_v3_length(dv) * dt;
+    uint32_t ra = c->a[i];
+    phys_geom ga = phys_shape_geom(w, phys_slot_row(&w->shapes.set, c->sa[i]));
+    phys_geom gb = phys_shape_geom(w, phys_slot_row(&w->shapes.set, c->sb[i]));
+    core_vec3 dv = phys_get3(b->vx, b->vy, b->vz, ra);
     phys_manifold m;
-    phys_collide(&ga, &gb, reach, &m);
+    phys_collide(&ga, &gb, PHYS_MARGIN + core_v3_length(dv) * dt, &m);
     // Far pairs count only when the gap can close within this step.
     if (m.count != 0 &&
         m.point[0].separation > PHYS_MARGIN + CORE_MAX(core_v3_dot(dv, m.normal), 0.0f) * dt) {
         m.count = 0;
     }
     if (m.count == 0) {
-        c->separation[i] = 1e30f;
+        c->separation[i] = PHYS_APART;
         c->jn[i] = c->jx[i] = c->jy[i] = c->jz[i] = 0.0f;
         return;
     }
@@ -34,9 +32,13 @@ static void refresh_ball(phys_world *w, uint32_t i, float dt) {
 static void narrow_balls(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     (void)chunk;
     (void)worker;
+    phys_world *w = ((void **)ctx)[0];
     const float *dt = ((void **)ctx)[1];
+    CORE_SIMD_SELECT(phys_narrow_balls)(w, begin, end, *dt);
     for (uint32_t i = begin; i < end; i++) {
-        refresh_ball(((void **)ctx)[0], i, *dt);
+        if (w->balls.fixed[i]) {
+            refresh_fixed_ball(w, i, *dt);
+        }
     }
 }
 
@@ -114,9 +116,7 @@ static void refresh_contact(phys_world *w, uint32_t i, float dt) {
     const phys_bodies *b = &w->bodies;
     uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
     uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
-    uint32_t ra = w->shapes.row[sa], rb = w->shapes.row[sb];
-    c->a[i] = ra;
-    c->b[i] = rb;
+    uint32_t ra = c->a[i], rb = c->b[i];
     core_vec3 ca = phys_get3(b->cx, b->cy, b->cz, ra), cb = phys_get3(b->cx, b->cy, b->cz, rb);
     core_quat qa = phys_body_quat(b, ra), qb = phys_body_quat(b, rb);
     core_vec3 dc = core_v3_sub(cb, ca);
@@ -151,7 +151,24 @@ static void narrow_contacts(void *ctx, uint32_t begin, uint32_t end, uint32_t ch
     }
 }
 
+// Contacts know their bodies' rows; removals move rows.
+static void refresh_rows(phys_world *w) {
+    const phys_shapes *s = &w->shapes;
+    for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
+        w->balls.a[i] = s->row[phys_slot_row(&s->set, w->balls.sa[i])];
+        w->balls.b[i] = s->row[phys_slot_row(&s->set, w->balls.sb[i])];
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->contacts.set); i++) {
+        w->contacts.a[i] = s->row[phys_slot_row(&s->set, w->contacts.sa[i])];
+        w->contacts.b[i] = s->row[phys_slot_row(&s->set, w->contacts.sb[i])];
+    }
+    w->rows_stale = false;
+}
+
 void phys_narrow_update(phys_world *w, float dt) {
+    if (w->rows_stale) {
+        refresh_rows(w);
+    }
     void *ctx[2] = {w, &dt};
     uint32_t balls = core_columns_count(&w->balls.set);
     uint32_t contacts = core_columns_count(&w->contacts.set);
@@ -163,7 +180,7 @@ void phys_narrow_update(phys_world *w, float dt) {
         w->bodies.touching[i] = 0;
     }
     for (uint32_t i = 0; i < balls; i++) {
-        if (w->balls.separation[i] < 1e29f) {
+        if (w->balls.separation[i] < PHYS_APART) {
             w->touching++;
             w->bodies.touching[w->balls.a[i]]++;
             w->bodies.touching[w->balls.b[i]]++;

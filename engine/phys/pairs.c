@@ -108,6 +108,11 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
         (w->bodies.type[s->row[second]] == PHYS_STATIC || is_ball(w, second))) {
         core_handle h = core_columns_add(&w->balls.set);
         uint32_t i = core_columns_count(&w->balls.set) - 1;
+        bool fixed = w->bodies.type[s->row[second]] != PHYS_DYNAMIC;
+        w->balls.fixed[i] = fixed;
+        w->balls.reach[i] = fixed ? PHYS_APART : s->radius[first] + s->radius[second];
+        w->balls.a[i] = s->row[first];
+        w->balls.b[i] = s->row[second];
         w->balls.sa[i] = sa;
         w->balls.sb[i] = sb;
         w->balls.stamp[i] = w->stamp;
@@ -116,6 +121,8 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
     } else {
         core_handle h = core_columns_add(&w->contacts.set);
         uint32_t i = core_columns_count(&w->contacts.set) - 1;
+        w->contacts.a[i] = s->row[first];
+        w->contacts.b[i] = s->row[second];
         w->contacts.sa[i] = sa;
         w->contacts.sb[i] = sb;
         w->contacts.stamp[i] = w->stamp;
@@ -156,14 +163,28 @@ static void sort_keys(uint64_t *key, uint64_t *tmp, uint32_t n) {
     }
 }
 
-static void remove_unstamped(phys_world *w) {
+// Whether a pair lives on: named by a full broad phase, or, for a partial one, not parted.
+static bool pair_lives(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t stamp) {
+    if (!w->broad->partial) {
+        return stamp == w->stamp;
+    }
+    const phys_shapes *s = &w->shapes;
+    uint32_t i = phys_slot_row(&s->set, sa), j = phys_slot_row(&s->set, sb);
+    if (w->pairs_stale && !phys_pair_wanted(w, i, j)) {
+        return false;
+    }
+    return s->x0[i] <= s->x1[j] && s->x0[j] <= s->x1[i] && s->y0[i] <= s->y1[j] &&
+           s->y0[j] <= s->y1[i] && s->z0[i] <= s->z1[j] && s->z0[j] <= s->z1[i];
+}
+
+static void remove_parted(phys_world *w) {
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
-        if (w->balls.stamp[i] != w->stamp) {
+        if (!pair_lives(w, w->balls.sa[i], w->balls.sb[i], w->balls.stamp[i])) {
             ball_remove(w, i, &w->events);
         }
     }
     for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
-        if (w->contacts.stamp[i] != w->stamp) {
+        if (!pair_lives(w, w->contacts.sa[i], w->contacts.sb[i], w->contacts.stamp[i])) {
             manifold_remove(w, i, &w->events);
         }
     }
@@ -194,7 +215,10 @@ void phys_pairs_update(phys_world *w) {
             w->contacts.stamp[phys_slot_row(&w->contacts.set, value >> 1)] = w->stamp;
         }
     }
-    remove_unstamped(w);
+    if (w->any_moved || !w->broad->partial) {
+        remove_parted(w);
+    }
+    w->pairs_stale = false;
     sort_keys(fresh, tmp, fresh_count);
     for (uint32_t i = 0; i < fresh_count; i++) {
         contact_add(w, (uint32_t)(fresh[i] >> 32), (uint32_t)fresh[i]);

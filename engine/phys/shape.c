@@ -268,24 +268,78 @@ core_aabb phys_geom_bounds(const phys_geom *g) {
     return (core_aabb){core_v3_sub(g->position, e), core_v3_add(g->position, e)};
 }
 
-// Bounds hold the shape for the whole step: grown by the margin and by the way it may travel.
+#define BOUNDS_GROWTH 0.03f // m, beyond the margin
+#define BOUNDS_STEPS  3.0f  // steps that a shape can go on before it leaves its bounds
+
+// What a shape may touch within the step: its bounds, the margin, and the way it goes.
+static phys_box reach_box(const phys_world *w, uint32_t i, uint32_t row, float dt, core_vec3 *way) {
+    const phys_shapes *s = &w->shapes;
+    const phys_bodies *b = &w->bodies;
+    core_aabb box;
+    core_vec3 local = s->position[i];
+    if (s->type[i] == PHYS_SPHERE && local.x == 0.0f && local.y == 0.0f && local.z == 0.0f) {
+        core_vec3 p = phys_get3(b->px, b->py, b->pz, row);
+        core_vec3 e = core_v3(s->radius[i], s->radius[i], s->radius[i]);
+        box = (core_aabb){core_v3_sub(p, e), core_v3_add(p, e)};
+    } else {
+        phys_geom g = phys_shape_geom(w, i);
+        box = phys_geom_bounds(&g);
+    }
+    core_vec3 v = phys_get3(b->vx, b->vy, b->vz, row);
+    *way = b->type[row] == PHYS_STATIC ? core_v3(0, 0, 0) : core_v3_scale(v, dt);
+    core_vec3 grow = core_v3_add(phys_abs3(*way), core_v3(PHYS_MARGIN, PHYS_MARGIN, PHYS_MARGIN));
+    return (phys_box){{box.min.x - grow.x, box.min.y - grow.y, box.min.z - grow.z},
+                      {box.max.x + grow.x, box.max.y + grow.y, box.max.z + grow.z}};
+}
+
+static void update_bounds(phys_world *w, uint32_t i, float dt) {
+    phys_shapes *s = &w->shapes;
+    uint32_t row = s->row[i];
+    core_vec3 way;
+    phys_box box = reach_box(w, i, row, dt, &way);
+    bool inside = box.lo[0] >= s->x0[i] && box.lo[1] >= s->y0[i] && box.lo[2] >= s->z0[i] &&
+                  box.hi[0] <= s->x1[i] && box.hi[1] <= s->y1[i] && box.hi[2] <= s->z1[i];
+    s->moved[i] = !inside;
+    if (inside) {
+        return;
+    }
+    bool fixed = w->bodies.type[row] == PHYS_STATIC;
+    float grow = fixed ? 0.0f : BOUNDS_GROWTH;
+    core_vec3 ahead = core_v3_scale(way, BOUNDS_STEPS);
+    s->x0[i] = box.lo[0] - grow + CORE_MIN(ahead.x, 0.0f);
+    s->y0[i] = box.lo[1] - grow + CORE_MIN(ahead.y, 0.0f);
+    s->z0[i] = box.lo[2] - grow + CORE_MIN(ahead.z, 0.0f);
+    s->x1[i] = box.hi[0] + grow + CORE_MAX(ahead.x, 0.0f);
+    s->y1[i] = box.hi[1] + grow + CORE_MAX(ahead.y, 0.0f);
+    s->z1[i] = box.hi[2] + grow + CORE_MAX(ahead.z, 0.0f);
+}
+
+typedef struct bounds_job {
+    phys_world *world;
+    float dt;
+} bounds_job;
+
+static void bounds_chunk(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const bounds_job *job = ctx;
+    for (uint32_t i = begin; i < end; i++) {
+        update_bounds(job->world, i, job->dt);
+    }
+}
+
 void phys_shapes_update_bounds(phys_world *w, float dt) {
     phys_shapes *s = &w->shapes;
-    const phys_bodies *b = &w->bodies;
     uint32_t n = core_columns_count(&s->set);
+    if (w->rows_stale) {
+        for (uint32_t i = 0; i < n; i++) {
+            s->row[i] = phys_slot_row(&w->bodies.set, s->body[i]);
+        }
+    }
+    core_jobs_for(w->jobs, n, 512, bounds_chunk, &(bounds_job){w, dt});
+    w->any_moved = false;
     for (uint32_t i = 0; i < n; i++) {
-        uint32_t row = phys_slot_row(&b->set, s->body[i]);
-        s->row[i] = row;
-        phys_geom g = phys_shape_geom(w, i);
-        core_aabb box = phys_geom_bounds(&g);
-        core_vec3 v = phys_abs3(phys_get3(b->vx, b->vy, b->vz, row));
-        float grow = PHYS_MARGIN;
-        core_vec3 way = b->type[row] == PHYS_STATIC ? core_v3(0, 0, 0) : core_v3_scale(v, dt);
-        s->x0[i] = box.min.x - grow - way.x;
-        s->y0[i] = box.min.y - grow - way.y;
-        s->z0[i] = box.min.z - grow - way.z;
-        s->x1[i] = box.max.x + grow + way.x;
-        s->y1[i] = box.max.y + grow + way.y;
-        s->z1[i] = box.max.z + grow + way.z;
+        s->moved[i] |= w->pairs_stale;
+        w->any_moved |= s->moved[i];
     }
 }

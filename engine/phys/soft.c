@@ -173,7 +173,7 @@ static void color_contacts(soft *s) {
     s->ball_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, balls + 1);
     s->contact_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, contacts + 1);
     for (uint32_t i = 0; i < balls; i++) {
-        if (w->balls.separation[i] > 1e29f) {
+        if (w->balls.separation[i] >= PHYS_APART) {
             s->ball_place[i].group = GROUPS;
             continue;
         }

@@ -76,7 +76,7 @@ static void gather(phys_world *w, solve *s) {
     uint32_t contacts = core_columns_count(&w->contacts.set);
     s->rows = CORE_ARENA_ARRAY(&w->scratch, row, ball_count + 4u * contacts + 1u);
     for (uint32_t i = 0; i < ball_count; i++) {
-        if (balls->separation[i] > 1e29f) {
+        if (balls->separation[i] >= PHYS_APART) {
             continue;
         }
         row *r = &s->rows[s->count++];
@@ -122,7 +122,7 @@ static core_vec3 rub_of(const row *r) {
 static void scatter(phys_world *w, const solve *s) {
     const row *r = s->rows;
     for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
-        if (w->balls.separation[i] < 1e29f) {
+        if (w->balls.separation[i] < PHYS_APART) {
             w->balls.jn[i] = r->jn;
             phys_put3(w->balls.jx, w->balls.jy, w->balls.jz, i, rub_of(r));
             r++;

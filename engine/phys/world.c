@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const phys_broad_method *const broads[] = {&phys_broad_sap, &phys_broad_brute};
+static const phys_broad_method *const broads[] = {&phys_broad_tree, &phys_broad_sap,
+                                                  &phys_broad_brute};
 static const phys_solver_method *const solvers[] = {&phys_solver_soft, &phys_solver_sequential};
 
 phys_world_desc phys_world_desc_default(void) {
@@ -15,12 +16,13 @@ phys_world_desc phys_world_desc_default(void) {
 
 const char *const *phys_method_names(const char *kind) {
     static const char *const solver[] = {"soft", "sequential", NULL};
-    static const char *const broad[] = {"auto", "sap", "brute", NULL};
+    static const char *const broad[] = {"auto", "tree", "sap", "brute", NULL};
     static const char *const none[] = {NULL};
     return strcmp(kind, "solver") == 0 ? solver : strcmp(kind, "broad") == 0 ? broad : none;
 }
 
 static bool pick_broad(phys_world *w, const char *name) {
+    w->pairs_stale = w->trees_stale = true;
     if (strcmp(name, "auto") == 0) {
         w->broad = broads[0];
         return true;
@@ -31,7 +33,8 @@ static bool pick_broad(phys_world *w, const char *name) {
             return true;
         }
     }
-    return core_fail("phys setting broad: '%s' is unknown, expected auto, sap or brute", name);
+    return core_fail("phys setting broad: '%s' is unknown, expected auto, tree, sap or brute",
+                     name);
 }
 
 static bool pick_solver(phys_world *w, const char *name) {
@@ -116,6 +119,7 @@ void phys_world_destroy(phys_world *w) {
     core_arena_release(&w->scratch);
     phys_pairs_release(w);
     phys_hulls_release(w);
+    phys_trees_release(w);
     core_free(w);
 }
 
@@ -168,6 +172,7 @@ bool phys_world_set_rule(phys_world *w, uint32_t a, uint32_t b, bool collide) {
     if (!check_layers(a, b)) {
         return false;
     }
+    w->pairs_stale = true;
     w->rule[a] = collide ? w->rule[a] | 1u << b : w->rule[a] & ~(1u << b);
     w->rule[b] = collide ? w->rule[b] | 1u << a : w->rule[b] & ~(1u << a);
     return true;
@@ -264,7 +269,9 @@ size_t phys_world_bytes(const phys_world *w) {
            core_columns_bytes(&w->fields.set) +
            (w->events.capacity + w->pending.capacity) * sizeof(phys_event) + w->scratch.committed +
            w->map.capacity * (sizeof(uint64_t) + sizeof(uint32_t)) +
-           w->pairs.capacity * sizeof(phys_pair) + w->order_capacity * sizeof(uint32_t);
+           w->pairs.capacity * sizeof(phys_pair) + w->order_capacity * sizeof(uint32_t) +
+           (w->fixed_tree.capacity + w->moving_tree.capacity) *
+               (sizeof(uint32_t) + sizeof(phys_box) / 2);
 }
 
 void phys_world_counts(const phys_world *w, core_metrics *m) {

@@ -7,6 +7,7 @@
 #include "phys/vec.h"
 
 #include "core/memory.h"
+#include "core/simd.h"
 
 enum {
     PHYS_WORLD_COOKIE = 0x70776f31,
@@ -24,6 +25,7 @@ enum {
 // than this (cosine of half the angle, 5 degrees).
 #define PHYS_KEEP_DISTANCE 0.02f
 #define PHYS_KEEP_COSINE   0.99905f
+#define PHYS_APART         1e30f   // separation of a pair out of reach
 #define PHYS_TOUCH         0.0005f // gaps up to this count as touching in events
 #define PHYS_FAR           1e6f    // positions beyond are refused
 #define PHYS_BOUNCE_MIN    0.2f // m/s: slower impacts do not bounce (they would never come to rest)
@@ -97,7 +99,8 @@ CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
     X(float, x1, CORE_COLUMN_STATE)                                                                \
     X(float, y1, CORE_COLUMN_STATE)                                                                \
     X(float, z1, CORE_COLUMN_STATE)                                                                \
-    X(uint32_t, row, 0) /* the owner's row, of this step */
+    X(uint8_t, moved, 0) /* left its bounds in this step, which were renewed */                    \
+    X(uint32_t, row, 0)  /* the owner's row, of this step */
 CORE_COLUMNS_DECLARE(phys_shapes, PHYS_SHAPE_COLUMNS)
 
 // One contact point. ra, rb: from the centres of mass, world axes, at the start of the step.
@@ -137,6 +140,8 @@ typedef struct phys_manifold {
     X(float, separation, 0)                                                                        \
     X(uint32_t, a, 0)                                                                              \
     X(uint32_t, b, 0)                                                                              \
+    X(float, reach, CORE_COLUMN_STATE)   /* sum of the radii; fixed: endless */                    \
+    X(uint8_t, fixed, CORE_COLUMN_STATE) /* b is no ball that moves */                             \
     X(uint32_t, stamp, 0)
 CORE_COLUMNS_DECLARE(phys_balls, PHYS_BALL_COLUMNS)
 #define PHYS_CONTACT_COLUMNS(X)                                                                    \
@@ -197,9 +202,22 @@ typedef struct phys_pair_list {
     uint32_t count, capacity;
 } phys_pair_list;
 
+typedef struct phys_box {
+    float lo[3], hi[3];
+} phys_box;
+// A complete binary tree of boxes over rows of shapes, see tree.c.
+typedef struct phys_tree {
+    uint32_t *order; // [count] shape rows
+    phys_box *node;  // [2 * leaves]
+    uint32_t count, leaves, capacity, age;
+} phys_tree;
+
 typedef struct phys_broad_method {
     const char *name;
-    void (*find)(phys_world *world); // fills world->pairs from the shapes' bounds
+    // Fills world->pairs from the shapes' bounds: all of them, or, when partial, those with a shape
+    // that moved.
+    void (*find)(phys_world *world);
+    bool partial;
 } phys_broad_method;
 typedef struct phys_solver_method {
     const char *name;
@@ -227,7 +245,12 @@ struct phys_world {
     phys_event_list events, pending; // of the last step; of removals since
     phys_pair_map map;
     phys_pair_list pairs;
-    uint32_t *order; // sweep order of shape rows, kept between steps
+    phys_tree fixed_tree, moving_tree;
+    bool trees_stale; // rows changed
+    bool any_moved;   // some shape left its bounds in this step
+    bool rows_stale;  // contacts' body rows are to be looked up again
+    bool pairs_stale; // layers or rules changed: every pair is to be asked again
+    uint32_t *order;  // sweep order of shape rows, kept between steps
     uint32_t order_count, order_capacity;
     core_arena scratch; // of one step
     uint32_t stamp;     // number of the broad phase, marks living pairs
@@ -250,7 +273,7 @@ typedef struct phys_geom {
     const phys_geom_hull *hull;
 } phys_geom;
 
-extern const phys_broad_method phys_broad_brute, phys_broad_sap;
+extern const phys_broad_method phys_broad_brute, phys_broad_sap, phys_broad_tree;
 extern const phys_solver_method phys_solver_sequential, phys_solver_soft;
 
 static inline core_vec3 phys_get3(const float *x, const float *y, const float *z, uint32_t i) {
@@ -296,6 +319,13 @@ void phys_body_sync_center(phys_bodies *b, uint32_t row); // origin -> centre of
 void phys_body_sync_origin(phys_bodies *b, uint32_t row); // centre of mass -> origin
 core_vec3 phys_body_inverse_inertia(const phys_bodies *b, uint32_t row, core_vec3 v);
 
+// tree.c
+void phys_tree_update(phys_world *world);
+// Rows whose bounds meet the box; returns how many there are, of which `capacity` are written.
+uint32_t phys_tree_query(const phys_world *world, const phys_tree *tree, const phys_box *box,
+                         uint32_t *out, uint32_t capacity);
+void phys_trees_release(phys_world *world);
+
 // pairs.c
 void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b);
 bool phys_pair_wanted(const phys_world *world, uint32_t shape_a, uint32_t shape_b);
@@ -307,6 +337,8 @@ void phys_pairs_rebuild_map(phys_world *world);
 // narrow.c, collide*.c: out->count points closer than the margin; features and impulses are set by
 // the caller. a.type <= b.type in the order of phys_shape_type.
 void phys_narrow_update(phys_world *world, float dt);
+CORE_SIMD_DECLARE(void, phys_narrow_balls,
+                  (phys_world * world, uint32_t begin, uint32_t end, float dt))
 void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 void phys_collide_convex(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);

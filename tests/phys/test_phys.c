@@ -224,8 +224,9 @@ static void test_one_hash_for_broad_phases_and_threads(void) {
     core_jobs *two = core_jobs_create(2);
     const char *const *solver = phys_method_names("solver");
     for (int i = 0; solver[i] != NULL; i++) {
+        compare(solver[i], pile("tree", NULL, 120), pile("brute", NULL, 120));
         compare(solver[i], pile("sap", NULL, 120), pile("brute", NULL, 120));
-        compare(solver[i], pile("sap", NULL, 120), pile("sap", two, 120));
+        compare(solver[i], pile("tree", NULL, 120), pile("tree", two, 120));
     }
     core_jobs_destroy(two);
 }
@@ -235,7 +236,7 @@ static void test_one_hash_for_instruction_sets(void) {
     core_simd_set active = core_simd_active();
     for (core_simd_set set = CORE_SIMD_SSE2; set <= core_simd_best(); set++) {
         TEST_ASSERT_TRUE(core_simd_use(set));
-        phys_world *w = pile("sap", NULL, 150);
+        phys_world *w = pile("auto", NULL, 150);
         run(w, 90);
         uint64_t h = state_hash(w);
         first = set == CORE_SIMD_SSE2 ? h : first;
@@ -246,7 +247,7 @@ static void test_one_hash_for_instruction_sets(void) {
 }
 
 static void test_no_allocation_after_warm_up(void) {
-    phys_world *w = pile("sap", NULL, 120);
+    phys_world *w = pile("auto", NULL, 120);
     run(w, 120);
     uint64_t before = core_alloc_count();
     run(w, 60);
