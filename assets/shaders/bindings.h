@@ -25,6 +25,8 @@
 #define GFX_SSBO_MATERIALS       4
 #define GFX_SSBO_BONES           5
 #define GFX_SSBO_QUADS           6
+#define GFX_SSBO_ROWS            7
+#define GFX_SSBO_SHADOWS         8
 
 // Texture units.
 #define GFX_TEX_BASE_COLOR         0
@@ -33,6 +35,7 @@
 #define GFX_TEX_OCCLUSION          3
 #define GFX_TEX_EMISSIVE           4
 #define GFX_TEX_DFG                5
+#define GFX_TEX_SHADOW             6
 #define GFX_TEX_HDR                8
 #define GFX_TEX_IMAGE              9
 
@@ -73,8 +76,18 @@ struct gfx_view_block {
 struct gfx_light_block {
     GFX_VEC4(position_radius); // world, m
     GFX_VEC4(color_type);      // linear intensity; GFX_LIGHT_*
-    GFX_VEC4(direction);       // unit, where the light goes; w unused
-    GFX_VEC4(spot);            // scale, offset of the squared smooth cone falloff; 1/radius^2
+    GFX_VEC4(direction);       // unit, where the light goes; w: number of shadow views
+    GFX_VEC4(spot);            // scale, offset of the squared smooth cone falloff; 1/radius^2;
+                               // w: 1 + first shadow view, 0 without shadow
+};
+
+// One depth map: a cascade of a sun, a spot, or one of six faces of a point light.
+struct gfx_shadow_block {
+    GFX_MAT4(matrix); // world to map coordinates 0..1 and reversed depth
+    GFX_VEC4(texel);  // metres a texel: across (orthographic), or at 1 m (perspective); texels a
+                      // side; size of the source: metres, or tangent of its angular radius
+    GFX_VEC4(depth);  // orthographic: depth range (m), 0; perspective: near plane (m), 1; end of
+                      // the cascade (view depth, m); layer
 };
 
 struct gfx_instance_block {

@@ -9,7 +9,8 @@ layout(binding = GFX_TEX_DFG) uniform sampler2D u_dfg;
 
 struct Surface {
     vec3 position; // world
-    vec3 normal;   // unit, towards the viewer
+    vec3 normal;     // unit, towards the viewer; from the normal map where there is one
+    vec3 flatNormal; // unit, of the geometry
     vec3 view;     // unit, towards the viewer
     float noV;
     float roughness; // perceptual

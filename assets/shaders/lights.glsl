@@ -1,3 +1,7 @@
+#ifdef USE_SHADOWS
+#include "shadow.glsl"
+#endif
+
 // Light loops. Plain forward walks all lights; clustered walks the ascending list of the fragment's
 // cell, so both add the same terms in the same order and the sums are equal bit for bit.
 layout(std430, binding = GFX_SSBO_LIGHTS) readonly buffer LightBlock { gfx_light_block lights[]; };
@@ -34,14 +38,25 @@ vec3 localLight(gfx_light_block light, Surface s) {
     float window = 1.0 - x * x;
     float falloff = window * window / max(d2, 1e-4);
     float cone = clamp(dot(-light.direction.xyz, l) * light.spot.x + light.spot.y, 0.0, 1.0);
-    return shade(s, l) * light.color_type.rgb * (falloff * cone * cone);
+    float reach = falloff * cone * cone;
+#ifdef USE_SHADOWS
+    if (reach > 0.0) {
+        reach *= shadowTerm(light, s, l);
+    }
+#endif
+    return shade(s, l) * light.color_type.rgb * reach;
 }
 
 vec3 directLight(Surface s) {
     vec3 sum = vec3(0.0);
     uint directional = u_view.light_count.x;
     for (uint i = 0u; i < directional; ++i) {
-        sum += shade(s, -lights[i].direction.xyz) * lights[i].color_type.rgb;
+        vec3 l = -lights[i].direction.xyz;
+        vec3 light = shade(s, l) * lights[i].color_type.rgb;
+#ifdef USE_SHADOWS
+        light *= shadowTerm(lights[i], s, l);
+#endif
+        sum += light;
     }
     // Beyond the virtual far plane no point or spot light reaches, in either renderer.
     if (viewDepth(gl_FragCoord.z) > u_view.depth_range.z) {

@@ -19,6 +19,8 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
     s.position = v_world;
     s.view = viewDirection(v_world);
     s.normal = normalize(gl_FrontFacing ? v_normal : -v_normal);
+    s.flatNormal = normalize(cross(dFdx(v_world), dFdy(v_world)));
+    s.flatNormal *= dot(s.flatNormal, s.view) < 0.0 ? -1.0 : 1.0;
     s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
     setMaterial(s, base.rgb, m.emissive_metallic.w, m.params.x);
     return s;

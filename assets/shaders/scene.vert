@@ -12,6 +12,8 @@ layout(location = GFX_ATTR_COLOR) in vec4 a_color;
 layout(std430, binding = GFX_SSBO_INSTANCES) readonly buffer InstanceBlock {
     gfx_instance_block instances[];
 };
+// Instances of this view, by draw.
+layout(std430, binding = GFX_SSBO_ROWS) readonly buffer RowBlock { uint rowOf[]; };
 #ifdef USE_SKINNING
 layout(location = GFX_ATTR_JOINT) in uvec4 a_joint;
 layout(location = GFX_ATTR_WEIGHT) in vec4 a_weight;
@@ -62,7 +64,7 @@ vec3 transformNormal(mat3x4 rows, vec3 n) {
 }
 
 void main() {
-    gfx_instance_block instance = instances[INSTANCE];
+    gfx_instance_block instance = instances[rowOf[INSTANCE]];
     mat3x4 world = rowsOf(instance);
     vec4 position = vec4(a_position, 1.0);
 #ifdef USE_SKINNING

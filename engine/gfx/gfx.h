@@ -51,6 +51,10 @@ typedef struct gfx_light_desc {
     float intensity;               // >= 0. Point, spot: radiant intensity; directional: irradiance
     float radius;                  // m, > 0: the light is zero beyond. Default 10
     float inner, outer;            // spot: half angles, radians, 0 <= inner < outer < pi/2
+    float source; // >= 0, for soft shadows: radius of the source (m), or of a sun's disk (tangent
+                  // of its angular radius, default 0.00465)
+    bool shadows; // default: directional lights only. 64 maps at most: one a cascade of a sun, one
+                  // of a spot, six of a point light; lights beyond cast none
     uint32_t cookie;
 } gfx_light_desc;
 gfx_light_desc gfx_light_desc_default(gfx_light_type type);

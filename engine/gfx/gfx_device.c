@@ -140,13 +140,15 @@ void gfx_device_destroy(gfx_device *device) {
     for (size_t i = 0; i < CORE_COUNT_OF(streams); ++i) {
         gfx_stream_release(streams[i]);
     }
+    gfx_shadows_release(&d->shadows);
     gfx_clusters_release(&d->clusters);
     gfx_cluster_lights_release(&d->cluster_lights);
     glDeleteBuffers(1, &d->material_buffer);
     glDeleteTextures(1, &d->dfg_texture);
     glDeleteVertexArrays(1, &d->empty_vao);
     release_targets(d);
-    gfx_growing *const arrays[] = {&d->visible, &d->keys, &d->scratch, &d->commands, &d->batches};
+    gfx_growing *const arrays[] = {&d->visible, &d->keys,     &d->scratch,
+                                   &d->rows,    &d->commands, &d->batches};
     for (size_t i = 0; i < CORE_COUNT_OF(arrays); ++i) {
         gfx_growing_release(arrays[i]);
     }

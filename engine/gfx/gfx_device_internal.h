@@ -9,6 +9,8 @@
 
 enum { GFX_FRAMES = 3 }; // frames that the processor may be ahead of the GPU, and itself
 
+// ---- buffers (gfx_buffers.c) ----
+
 // A buffer written once a frame through a persistent mapping, in GFX_FRAMES turns.
 typedef struct gfx_stream {
     GLuint name;
@@ -39,7 +41,66 @@ typedef struct gfx_geometry { // all meshes of one world in common buffers
 bool gfx_geometry_update(gfx_geometry *g, const gfx_world *world);
 void gfx_geometry_release(gfx_geometry *g);
 
+// ---- draw lists (gfx_draw_list.c) ----
+
+typedef struct gfx_sort_key {
+    uint64_t key;
+    uint32_t row, pad;
+} gfx_sort_key;
+// Sorts by key, equal keys in the order they stand in. scratch holds as many.
+void gfx_sort_keys(gfx_sort_key *keys, gfx_sort_key *scratch, uint32_t count);
+
+typedef struct gfx_draw_command { // one entry of a GL_DRAW_INDIRECT_BUFFER
+    uint32_t count, instances, first_index;
+    int32_t base_vertex;
+    uint32_t base_instance;
+} gfx_draw_command;
+typedef struct gfx_batch { // consecutive commands with one state
+    uint32_t features;
+    uint32_t first, count;
+} gfx_batch;
+typedef struct gfx_draw_list { // one view's part of the frame's batches
+    uint32_t first_batch, batches, triangles;
+} gfx_draw_list;
+
+// A frame: begin, one list a view, upload once, submit lists with `features` added to the batches'.
+void gfx_draws_begin(gfx_device *device);
+void gfx_draws_add_view(gfx_device *device, const gfx_world *world, const gfx_view *view,
+                        gfx_draw_list *list);
+void gfx_draws_upload(gfx_device *device, const gfx_world *world);
+bool gfx_draws_submit(gfx_device *device, gfx_world *world, const gfx_draw_list *list,
+                      const char *fragment, uint32_t features);
+
+// ---- shadows (gfx_shadow.c) ----
+
+enum { GFX_SHADOW_VIEWS = 64 };
+typedef struct gfx_shadow_view {
+    gfx_view view;
+    gfx_draw_list list;
+    struct gfx_shadow_block block;
+    uint64_t key; // of what the layer should hold: matrix and casters
+    bool current; // it holds that already
+} gfx_shadow_view;
+typedef struct gfx_shadows {
+    gfx_shadow_view view[GFX_SHADOW_VIEWS];
+    uint32_t count;
+    GLuint texture, target, sampler;         // array; framebuffer
+    uint32_t size, layers, views_of_type[3]; // by gfx_light_type
+    uint64_t drawn[GFX_SHADOW_VIEWS];        // key of each layer, 0: none
+    gfx_growing first;                       // u16 a light row: 1 + its first view, 0 none
+    gfx_stream block, views;
+} gfx_shadows;
+// Plans the maps of this frame's lights: views, blocks, draw lists of layers that are out of date.
+void gfx_shadows_plan(gfx_device *device, const gfx_world *world, const gfx_view *view);
+bool gfx_shadows_draw(gfx_device *device, gfx_world *world);
+// 1 + number of the first view of a light's row, 0 without shadow; how many views its type has.
+float gfx_shadow_first(const gfx_device *device, uint32_t row);
+float gfx_shadow_view_count(const gfx_device *device, uint32_t type);
+void gfx_shadows_release(gfx_shadows *shadows);
+
 // ---- lights (gfx_light_upload.c) ----
+
+extern const struct gfx_light_block gfx_default_sun;
 typedef struct gfx_light_upload {
     uint32_t directional, local; // in the light block, in this order
     bool clustered;
@@ -53,6 +114,7 @@ void gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *vie
                        gfx_light_upload *out);
 
 // ---- screen-space quads (gfx_quads.c, gfx_font.c) ----
+
 typedef struct gfx_font gfx_font;
 gfx_font *gfx_font_create(core_vfs *vfs); // NULL: no font found, a warning is logged
 void gfx_font_release(gfx_font *font);
@@ -84,16 +146,7 @@ typedef struct gfx_quads {
 bool gfx_quads_draw(gfx_device *device, const gfx_world *world);
 void gfx_quads_release(gfx_quads *quads);
 
-// One entry of a GL_DRAW_INDIRECT_BUFFER.
-typedef struct gfx_draw_command {
-    uint32_t count, instances, first_index;
-    int32_t base_vertex;
-    uint32_t base_instance;
-} gfx_draw_command;
-typedef struct gfx_batch { // consecutive commands with one state
-    uint32_t features;
-    uint32_t first, count;
-} gfx_batch;
+// ---- the device (gfx_device.c, gfx_frame.c) ----
 
 struct gfx_device {
     gfx_context *context;
@@ -106,36 +159,24 @@ struct gfx_device {
     uint32_t passes;        // of the last frame
     uint32_t width, height; // of the targets
     GLuint hdr_texture, depth_texture, hdr_target, ldr_texture, ldr_target;
-    GLuint empty_vao;
+    GLuint empty_vao, dfg_texture;
     gfx_geometry geometry;
+    gfx_stream view_block, light_block, instance_block, bone_block, draw_block, row_block;
     gfx_stream cluster_offsets, cluster_lists;
     gfx_clusters clusters;
     gfx_cluster_lights cluster_lights;
-    gfx_stream view_block, light_block, instance_block, bone_block, draw_block;
-    GLuint material_buffer, dfg_texture;
+    gfx_shadows shadows;
+    GLuint material_buffer;
     uint64_t material_world, material_version;
     GLsync fence[GFX_FRAMES];
     uint32_t frame; // turn of the streams
     gfx_quads quads;
-    gfx_growing visible, keys, scratch, commands, batches; // of the draw list
+    gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists
 };
 
 // False + core_fail when GL complained since `errors_before` was read from device->gl_errors.
 bool gfx_device_check(gfx_device *device, const char *what, uint32_t errors_before);
 // Makes the targets as large as the window is now.
 bool gfx_device_follow_window(gfx_device *device);
-
-// ---- draw list (gfx_draw_list.c) ----
-typedef struct gfx_sort_key {
-    uint64_t key;
-    uint32_t row, pad;
-} gfx_sort_key;
-// Sorts by key, equal keys in the order they stand in. scratch holds as many.
-void gfx_sort_keys(gfx_sort_key *keys, gfx_sort_key *scratch, uint32_t count);
-// Fills device->visible, the instance, bone and command streams and device->batches for a view.
-bool gfx_draw_list_build(gfx_device *device, gfx_world *world, const gfx_view *view);
-// Draws the list; `features` are added to each batch's own.
-bool gfx_draw_list_submit(gfx_device *device, gfx_world *world, const char *fragment,
-                          uint32_t features);
 
 #endif

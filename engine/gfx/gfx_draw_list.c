@@ -1,4 +1,5 @@
-// The draw list of a view: visible instances, sorted by state, merged into instanced commands.
+// Draw lists: the visible instances of each view of a frame, sorted by state and merged into
+// instanced commands. Views share one upload of instances; each has its own list of their rows.
 #include "gfx/gfx_device_internal.h"
 
 #include <string.h>
@@ -47,26 +48,69 @@ static const gfx_mesh_place *place_of(const gfx_geometry *g, gfx_mesh mesh) {
     return &g->place[mesh.index];
 }
 
-static uint32_t make_keys(gfx_device *d, const gfx_world *world, const uint32_t *rows,
-                          uint32_t count, uint32_t *bones) {
-    d->keys.count = d->scratch.count = 0;
+void gfx_draws_begin(gfx_device *d) { d->rows.count = d->commands.count = d->batches.count = 0; }
+
+// Keys of the rows that are in the view and have a mesh.
+static uint32_t make_keys(gfx_device *d, const gfx_world *world, const gfx_view *view) {
+    const gfx_instances *s = &world->instances;
+    uint32_t total = core_columns_count(&s->set), kept = 0;
+    d->visible.count = d->keys.count = d->scratch.count = 0;
+    uint32_t *rows = gfx_grow(&d->visible, sizeof *rows, total), count = total;
+    if (world->settings.culling) {
+        count = gfx_cull(s, view, rows);
+    } else {
+        for (uint32_t i = 0; i < total; ++i) {
+            rows[i] = i;
+        }
+    }
     gfx_sort_key *keys = gfx_grow(&d->keys, sizeof *keys, count);
     gfx_sort_key *scratch = gfx_grow(&d->scratch, sizeof *scratch, count);
-    const gfx_instances *s = &world->instances;
-    uint32_t kept = 0;
-    *bones = 0;
     for (uint32_t i = 0; i < count; ++i) {
-        uint32_t row = rows[i];
-        const gfx_mesh_place *place = place_of(&d->geometry, s->mesh[row]);
-        if (!place) {
-            continue;
+        const gfx_mesh_place *place = place_of(&d->geometry, s->mesh[rows[i]]);
+        if (place) {
+            uint32_t features = place->skinned && s->palette[rows[i]] ? GFX_FEATURE_SKINNING : 0;
+            keys[kept++] = (gfx_sort_key){sort_key(features, s->mesh[rows[i]].index), rows[i], 0};
         }
-        uint32_t features = place->skinned && s->palette[row] ? GFX_FEATURE_SKINNING : 0;
-        *bones += features ? s->palette_bones[row] : 0;
-        keys[kept++] = (gfx_sort_key){sort_key(features, s->mesh[row].index), row, 0};
     }
     gfx_sort_keys(keys, scratch, kept);
     return kept;
+}
+
+static gfx_batch *last_batch(gfx_device *d, const gfx_draw_list *list, uint32_t features) {
+    gfx_batch *batch = (gfx_batch *)d->batches.data + d->batches.count - 1;
+    if (list->batches == 0 || batch->features != features) {
+        batch = gfx_grow(&d->batches, sizeof *batch, 1);
+        *batch = (gfx_batch){.features = features, .first = (uint32_t)d->commands.count};
+    }
+    return batch;
+}
+
+void gfx_draws_add_view(gfx_device *d, const gfx_world *world, const gfx_view *view,
+                        gfx_draw_list *list) {
+    uint32_t count = make_keys(d, world, view), first_row = (uint32_t)d->rows.count;
+    const gfx_sort_key *keys = d->keys.data;
+    uint32_t *rows = gfx_grow(&d->rows, sizeof *rows, count);
+    bool merge = world->settings.instancing && d->draw_parameters;
+    gfx_draw_command *command = NULL;
+    *list = (gfx_draw_list){.first_batch = (uint32_t)d->batches.count};
+    for (uint32_t i = 0; i < count; ++i) {
+        const gfx_mesh_place *place = place_of(&d->geometry, world->instances.mesh[keys[i].row]);
+        rows[i] = keys[i].row;
+        list->triangles += place->index_count / 3;
+        if (merge && i && keys[i].key == keys[i - 1].key) {
+            command->instances++;
+            continue;
+        }
+        gfx_batch *batch = last_batch(d, list, (uint32_t)(keys[i].key >> 48));
+        list->batches = (uint32_t)d->batches.count - list->first_batch;
+        batch->count++;
+        command = gfx_grow(&d->commands, sizeof *command, 1);
+        *command = (gfx_draw_command){.count = place->index_count,
+                                      .instances = 1,
+                                      .first_index = place->first_index,
+                                      .base_vertex = (int32_t)place->base_vertex,
+                                      .base_instance = first_row + i};
+    }
 }
 
 static void write_instance(const gfx_world *world, uint32_t row, uint32_t bone,
@@ -80,82 +124,39 @@ static void write_instance(const gfx_world *world, uint32_t row, uint32_t bone,
     out->index[2] = out->index[3] = 0;
 }
 
-typedef struct list_writer {
-    gfx_draw_command *command;
-    struct gfx_instance_block *instance;
-    gfx_rows *bone;
-    uint32_t commands, instances, bones;
-    uint64_t last_key;
-} list_writer;
-
-// Starts a command when the state differs from the last one's, or always without instancing.
-static void write_command(gfx_device *d, list_writer *w, const gfx_mesh_place *place, uint64_t key,
-                          bool merge) {
-    if (merge && w->commands && key == w->last_key) {
-        w->command[w->commands - 1].instances++;
-        return;
+static void copy_stream(gfx_device *d, gfx_stream *stream, const gfx_growing *from, size_t size) {
+    size_t bytes = from->count * size;
+    void *to = gfx_stream_begin(stream, bytes, d->frame);
+    if (bytes) {
+        memcpy(to, from->data, bytes);
     }
-    uint32_t features = (uint32_t)(key >> 48);
-    gfx_batch *batch =
-        d->batches.count ? (gfx_batch *)d->batches.data + d->batches.count - 1 : NULL;
-    if (!batch || batch->features != features) {
-        batch = gfx_grow(&d->batches, sizeof *batch, 1);
-        *batch = (gfx_batch){.features = features, .first = w->commands};
-    }
-    batch->count++;
-    w->command[w->commands++] = (gfx_draw_command){.count = place->index_count,
-                                                   .instances = 1,
-                                                   .first_index = place->first_index,
-                                                   .base_vertex = (int32_t)place->base_vertex,
-                                                   .base_instance = w->instances};
-    w->last_key = key;
 }
 
-bool gfx_draw_list_build(gfx_device *d, gfx_world *world, const gfx_view *view) {
-    uint32_t total = core_columns_count(&world->instances.set);
-    d->visible.count = d->batches.count = 0;
-    uint32_t *rows = gfx_grow(&d->visible, sizeof *rows, total);
-    uint32_t bones, visible = total;
-    if (world->settings.culling) {
-        visible = gfx_cull(&world->instances, view, rows);
-    } else {
-        for (uint32_t i = 0; i < total; ++i) {
-            rows[i] = i;
-        }
-    }
-    uint32_t count = make_keys(d, world, rows, visible, &bones);
-    const gfx_sort_key *keys = d->keys.data;
-    list_writer w = {
-        .command = gfx_stream_begin(&d->draw_block, count * sizeof *w.command, d->frame),
-        .instance = gfx_stream_begin(&d->instance_block, count * sizeof *w.instance, d->frame),
-        .bone = gfx_stream_begin(&d->bone_block, bones * sizeof *w.bone, d->frame),
-    };
-    d->commands.count = 0;
-    gfx_draw_command *command = gfx_grow(&d->commands, sizeof *command, count);
-    gfx_draw_command *stream = w.command;
-    w.command = command; // merged in ordinary memory: the mapping is for writing only
-    uint32_t triangles = 0;
-    bool merge = world->settings.instancing && d->draw_parameters;
+void gfx_draws_upload(gfx_device *d, const gfx_world *world) {
+    const gfx_instances *s = &world->instances;
+    uint32_t count = core_columns_count(&s->set), bones = 0;
     for (uint32_t i = 0; i < count; ++i) {
-        uint32_t row = keys[i].row;
-        const gfx_mesh_place *place = place_of(&d->geometry, world->instances.mesh[row]);
-        write_command(d, &w, place, keys[i].key, merge);
-        write_instance(world, row, w.bones, &w.instance[w.instances++]);
-        if (keys[i].key >> 48 & GFX_FEATURE_SKINNING) {
-            uint32_t n = world->instances.palette_bones[row];
-            memcpy(w.bone + w.bones, world->instances.palette[row], n * sizeof *w.bone);
-            w.bones += n;
-        }
-        triangles += place->index_count / 3;
+        bones += s->palette[i] ? s->palette_bones[i] : 0;
     }
-    memcpy(stream, command, w.commands * sizeof *command);
+    struct gfx_instance_block *instance =
+        gfx_stream_begin(&d->instance_block, count * sizeof *instance, d->frame);
+    gfx_rows *bone = gfx_stream_begin(&d->bone_block, bones * sizeof *bone, d->frame);
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        write_instance(world, i, at, &instance[i]);
+        if (s->palette[i]) {
+            memcpy(bone + at, s->palette[i], s->palette_bones[i] * sizeof *bone);
+            at += s->palette_bones[i];
+        }
+    }
+    copy_stream(d, &d->row_block, &d->rows, sizeof(uint32_t));
+    copy_stream(d, &d->draw_block, &d->commands, sizeof(gfx_draw_command));
     gfx_stream_bind(&d->instance_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_INSTANCES,
-                    count * sizeof *w.instance, d->frame);
-    gfx_stream_bind(&d->bone_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_BONES,
-                    bones * sizeof *w.bone, d->frame);
-    world->stats.visible = count;
-    world->stats.triangles = triangles;
-    return true;
+                    count * sizeof *instance, d->frame);
+    gfx_stream_bind(&d->bone_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_BONES, bones * sizeof *bone,
+                    d->frame);
+    gfx_stream_bind(&d->row_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_ROWS,
+                    d->rows.count * sizeof(uint32_t), d->frame);
 }
 
 static void submit_batch(gfx_device *d, const gfx_batch *batch, bool instanced) {
@@ -174,13 +175,13 @@ static void submit_batch(gfx_device *d, const gfx_batch *batch, bool instanced) 
     }
 }
 
-bool gfx_draw_list_submit(gfx_device *d, gfx_world *world, const char *fragment,
-                          uint32_t features) {
+bool gfx_draws_submit(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
+                      const char *fragment, uint32_t features) {
     bool instanced = world->settings.instancing && d->draw_parameters;
     features |= instanced ? GFX_FEATURE_INSTANCING : 0;
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, d->draw_block.name);
-    const gfx_batch *batch = d->batches.data;
-    for (size_t i = 0; i < d->batches.count; ++i, ++batch) {
+    const gfx_batch *batch = (const gfx_batch *)d->batches.data + list->first_batch;
+    for (uint32_t i = 0; i < list->batches; ++i, ++batch) {
         GLuint program =
             gfx_shaders_get(&d->shaders, "scene.vert", fragment, features | batch->features);
         if (!program) {

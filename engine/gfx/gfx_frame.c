@@ -76,8 +76,17 @@ static void upload_materials(gfx_device *d, const gfx_world *world) {
 
 // ---- passes ----
 
-static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
-    d->passes++;
+static uint32_t scene_features(const gfx_device *d, const gfx_world *world, bool clustered) {
+    uint32_t features = clustered ? GFX_FEATURE_CLUSTERED : 0;
+    if (d->shadows.count) {
+        features |= GFX_FEATURE_SHADOWS;
+        features |= world->settings.shadows == GFX_SHADOWS_SOFT ? GFX_FEATURE_SOFT_SHADOWS : 0;
+    }
+    return features;
+}
+
+static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
+                       uint32_t features) {
     const float *c = world->background;
     const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
     glBindTextureUnit(GFX_TEX_DFG, d->dfg_texture);
@@ -90,9 +99,11 @@ static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(d->hdr_target, GL_COLOR, 0, clear);
     glClearNamedFramebufferfv(d->hdr_target, GL_DEPTH, 0, &depth);
+    d->passes++;
     if (world->settings.prepass) {
+        d->passes++;
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        bool ok = gfx_draw_list_submit(d, world, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
+        bool ok = gfx_draws_submit(d, world, list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glDepthFunc(GL_EQUAL);
         glDepthMask(GL_FALSE);
@@ -100,7 +111,9 @@ static bool pass_scene(gfx_device *d, gfx_world *world, bool clustered) {
             return false;
         }
     }
-    return gfx_draw_list_submit(d, world, "scene.frag", clustered ? GFX_FEATURE_CLUSTERED : 0);
+    bool ok = gfx_draws_submit(d, world, list, "scene.frag", features);
+    glDepthMask(GL_TRUE);
+    return ok;
 }
 
 static bool pass_tonemap(gfx_device *d) {
@@ -149,8 +162,16 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     gfx_camera camera = gfx_world_camera_or_default(world);
     gfx_view_make(&camera, (float)d->width / (float)d->height, &view);
     gfx_light_upload lights;
+    gfx_draw_list list;
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CULL);
-    bool ok = gfx_geometry_update(&d->geometry, world) && gfx_draw_list_build(d, world, &view);
+    bool ok = gfx_geometry_update(&d->geometry, world);
+    if (ok) {
+        gfx_draws_begin(d);
+        gfx_draws_add_view(d, world, &view, &list);
+        gfx_shadows_plan(d, world, &view);
+        gfx_draws_upload(d, world);
+        world->stats.triangles = list.triangles;
+    }
     core_stage_end(d->metrics, CORE_STAGE_GFX_CULL);
     if (!ok) {
         return false;
@@ -160,8 +181,10 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
     upload_materials(d, world);
+    ok = gfx_shadows_draw(d, world);
     upload_view(d, world, &view, &lights);
-    ok = pass_scene(d, world, lights.clustered) && pass_tonemap(d) && gfx_quads_draw(d, world);
+    ok = ok && pass_scene(d, world, &list, scene_features(d, world, lights.clustered)) &&
+         pass_tonemap(d) && gfx_quads_draw(d, world);
     core_stage_end(d->metrics, CORE_STAGE_GFX_DRAW);
     return ok;
 }

@@ -32,7 +32,9 @@ typedef struct gfx_rgba {
     X(float, intensity, 0)                                                                         \
     X(float, radius, 0)                                                                            \
     X(float, inner, 0)                                                                             \
-    X(float, outer, 0)
+    X(float, outer, 0)                                                                             \
+    X(float, source, 0)                                                                            \
+    X(uint32_t, shadows, 0)
 CORE_COLUMNS_DECLARE(gfx_lights, GFX_LIGHT_COLUMNS)
 
 #define GFX_INSTANCE_COLUMNS(X)                                                                    \
@@ -96,6 +98,7 @@ typedef struct gfx_growing { // array that keeps its memory between frames
 void *gfx_grow(gfx_growing *array, size_t element, size_t extra);
 void gfx_growing_release(gfx_growing *array);
 
+enum { GFX_SHADOWS_OFF, GFX_SHADOWS_PCF, GFX_SHADOWS_SOFT };
 enum { GFX_RENDER_AUTO, GFX_RENDER_FORWARD, GFX_RENDER_CLUSTERED, GFX_RENDER_NONE };
 
 typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by offset
@@ -106,6 +109,8 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     float exposure;
     int tonemap;                      // GFX_TONEMAP_*
     int instancing, culling, prepass; // switches
+    int shadows;                      // GFX_SHADOWS_*
+    float shadow_size, shadow_distance, cascades;
 } gfx_settings;
 
 typedef struct gfx_frame_stats {
@@ -121,7 +126,7 @@ struct gfx_world {
     gfx_meshes meshes;
     gfx_materials materials;
     gfx_mesh builtin[GFX_BUILTIN_MESHES];
-    uint64_t mesh_version, material_version; // raised by every change
+    uint64_t mesh_version, material_version, instance_version; // raised by every change
     gfx_settings settings;
     gfx_camera camera;
     bool camera_set;
@@ -151,6 +156,9 @@ typedef struct gfx_view {
     float plane[GFX_PLANES][4]; // unit normals inwards: n.p + d >= 0 inside
 } gfx_view;
 void gfx_view_make(const gfx_camera *camera, float aspect, gfx_view *out);
+// By hand: camera_view, then the projection, then finish (product and planes).
+void gfx_camera_view(gfx_view *view, core_vec3 eye, core_vec3 target, core_vec3 up);
+void gfx_view_finish(gfx_view *view);
 // Camera of a world, or one that sees all its instances when none was set.
 gfx_camera gfx_world_camera_or_default(const gfx_world *world);
 

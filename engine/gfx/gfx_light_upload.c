@@ -6,7 +6,8 @@
 // From this many point and spot lights on, `auto` draws clustered.
 enum { AUTO_CLUSTERED = 4 };
 
-static void write_light(const gfx_lights *l, uint32_t i, struct gfx_light_block *out) {
+static void write_light(const gfx_device *d, const gfx_lights *l, uint32_t i,
+                        struct gfx_light_block *out) {
     bool directional = l->type[i] == GFX_DIRECTIONAL;
     // The cone falls from 1 at cos(inner) to 0 at cos(outer); points have no cone.
     float scale = 0.0f, offset = 1.0f;
@@ -20,12 +21,12 @@ static void write_light(const gfx_lights *l, uint32_t i, struct gfx_light_block 
         .position_radius = {l->px[i], l->py[i], l->pz[i], r},
         .color_type = {l->r[i] * l->intensity[i], l->g[i] * l->intensity[i],
                        l->b[i] * l->intensity[i], (float)l->type[i]},
-        .direction = {l->dx[i], l->dy[i], l->dz[i], 0.0f},
-        .spot = {scale, offset, directional ? 0.0f : 1.0f / (r * r), 0.0f},
+        .direction = {l->dx[i], l->dy[i], l->dz[i], gfx_shadow_view_count(d, l->type[i])},
+        .spot = {scale, offset, directional ? 0.0f : 1.0f / (r * r), gfx_shadow_first(d, i)},
     };
 }
 
-static const struct gfx_light_block default_sun = {
+const struct gfx_light_block gfx_default_sun = {
     .color_type = {3.0f, 2.9f, 2.7f, GFX_LIGHT_DIRECTIONAL},
     .direction = {-0.4082f, -0.8165f, -0.4082f, 0.0f},
 };
@@ -37,17 +38,19 @@ static void write_lights(gfx_device *d, const gfx_world *world, gfx_light_upload
     struct gfx_light_block *block =
         gfx_stream_begin(&d->light_block, (n + 1) * sizeof *block, d->frame);
     if (n == 0 && !world->ambient_set) {
-        block[at++] = default_sun;
+        block[at] = gfx_default_sun;
+        block[at].direction[3] = gfx_shadow_view_count(d, GFX_DIRECTIONAL);
+        block[at++].spot[3] = gfx_shadow_first(d, 0);
     }
     for (uint32_t i = 0; i < n; ++i) {
         if (l->type[i] == GFX_DIRECTIONAL) {
-            write_light(l, i, &block[at++]);
+            write_light(d, l, i, &block[at++]);
         }
     }
     out->directional = at;
     for (uint32_t i = 0; i < n; ++i) {
         if (l->type[i] != GFX_DIRECTIONAL) {
-            write_light(l, i, &block[at++]);
+            write_light(d, l, i, &block[at++]);
         }
     }
     out->local = at - out->directional;

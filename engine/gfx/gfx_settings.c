@@ -84,6 +84,10 @@ static const setting table[] = {
     {"exposure", offsetof(gfx_settings, exposure), {NULL}, 1e-6f, 1e6f},
     {"tonemap", offsetof(gfx_settings, tonemap), {"neutral", "linear"}, 0, 0},
     {"instancing", offsetof(gfx_settings, instancing), {"off", "on"}, 0, 0},
+    {"shadows", offsetof(gfx_settings, shadows), {"off", "pcf", "soft"}, 0, 0},
+    {"shadow_size", offsetof(gfx_settings, shadow_size), {NULL}, 16.0f, 8192.0f},
+    {"shadow_distance", offsetof(gfx_settings, shadow_distance), {NULL}, 1.0f, 1e6f},
+    {"cascades", offsetof(gfx_settings, cascades), {NULL}, 1.0f, 4.0f},
     {"prepass", offsetof(gfx_settings, prepass), {"off", "on"}, 0, 0},
     {"culling", offsetof(gfx_settings, culling), {"off", "on"}, 0, 0},
 };

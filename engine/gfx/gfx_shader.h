@@ -11,6 +11,8 @@
     X(CLUSTERED, "USE_CLUSTERED_RENDERING")                                                        \
     X(INSTANCING, "USE_INSTANCING")                                                                \
     X(SKINNING, "USE_SKINNING")                                                                    \
+    X(SHADOWS, "USE_SHADOWS")                                                                      \
+    X(SOFT_SHADOWS, "USE_SOFT_SHADOWS")                                                            \
     X(DEPTH_ONLY, "DEPTH_ONLY")                                                                    \
     X(TEXT, "USE_TEXT")                                                                            \
     X(IMAGE, "USE_IMAGE")

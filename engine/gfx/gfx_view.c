@@ -50,8 +50,16 @@ void gfx_view_make(const gfx_camera *camera, float aspect, gfx_view *out) {
                           ? core_mat4_ortho(-out->tan_x, out->tan_x, -out->tan_y, out->tan_y,
                                             out->near_plane, out->virtual_far)
                           : core_mat4_perspective(fovy, aspect, out->near_plane);
-    out->view_projection = core_mat4_mul(&out->projection, &out->view);
-    frustum_planes(out);
+    gfx_view_finish(out);
+}
+
+void gfx_view_finish(gfx_view *v) {
+    v->view_projection = core_mat4_mul(&v->projection, &v->view);
+    frustum_planes(v);
+}
+
+void gfx_camera_view(gfx_view *v, core_vec3 eye, core_vec3 target, core_vec3 up) {
+    *v = (gfx_view){.view = core_mat4_look_at(eye, target, up), .position = eye};
 }
 
 // Looks at the sphere round all instances from a corner above, far enough to see it whole.

@@ -38,7 +38,11 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
                                  .exposure = 1.0f,
                                  .instancing = 1,
                                  .culling = 1,
-                                 .prepass = 1};
+                                 .prepass = 1,
+                                 .shadows = GFX_SHADOWS_PCF,
+                                 .shadow_size = 1024.0f,
+                                 .shadow_distance = 80.0f,
+                                 .cascades = 3.0f};
     const float ambient[3] = {0.32f, 0.36f, 0.42f}, background[3] = {0.11f, 0.14f, 0.18f};
     memcpy(w->ambient, ambient, sizeof ambient);
     memcpy(w->background, background, sizeof background);
@@ -120,6 +124,8 @@ gfx_light_desc gfx_light_desc_default(gfx_light_type type) {
                             .radius = 10.0f,
                             .inner = 0.4f,
                             .outer = 0.6f,
+                            .source = type == GFX_DIRECTIONAL ? 0.00465f : 0.05f,
+                            .shadows = type == GFX_DIRECTIONAL,
                             .cookie = GFX_COOKIE};
 }
 
@@ -143,6 +149,10 @@ static bool check_light(const gfx_light_desc *d) {
     if (d->type != GFX_DIRECTIONAL && (!(d->radius > 0.0f) || !isfinite(d->radius))) {
         return core_fail("gfx_light_create: radius is %g m, expected a finite number > 0",
                          (double)d->radius);
+    }
+    if (!(d->source >= 0.0f) || !isfinite(d->source)) {
+        return core_fail("gfx_light_create: source is %g, expected a finite number >= 0",
+                         (double)d->source);
     }
     if (d->type == GFX_SPOT &&
         !(d->inner >= 0.0f && d->inner < d->outer && d->outer < 0.5f * CORE_PI_F)) {
@@ -174,6 +184,8 @@ gfx_light gfx_light_create(gfx_world *world, const gfx_light_desc *desc) {
     l->intensity[i] = desc->intensity;
     l->radius[i] = desc->type == GFX_DIRECTIONAL ? 0.0f : desc->radius;
     l->inner[i] = desc->inner, l->outer[i] = desc->outer;
+    l->source[i] = desc->source;
+    l->shadows[i] = desc->shadows;
     return light;
 }
 
@@ -304,6 +316,7 @@ bool gfx_instance_destroy(gfx_world *world, gfx_instance instance) {
         return false;
     }
     core_free(world->instances.palette[i]);
+    world->instance_version++;
     world->heap_bytes -= world->instances.palette_bones[i] * sizeof(gfx_rows);
     return core_columns_remove(&world->instances.set, instance, NULL, NULL);
 }
@@ -378,11 +391,17 @@ bool gfx_instance_set_transform(gfx_world *world, gfx_instance instance, core_ve
         return false;
     }
     core_mat4 m = core_mat4_trs(t, r, s);
+    gfx_rows rows;
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
-            world->instances.rows[i].m[row * 4 + column] = m.m[column * 4 + row];
+            rows.m[row * 4 + column] = m.m[column * 4 + row];
         }
     }
+    if (memcmp(&rows, &world->instances.rows[i], sizeof rows) == 0) {
+        return true; // shadow maps of things at rest stay as they are
+    }
+    world->instances.rows[i] = rows;
+    world->instance_version++;
     update_bounds(world, i, true);
     return true;
 }
@@ -407,6 +426,7 @@ bool gfx_instance_set_palette(gfx_world *world, gfx_instance instance, const flo
         world->heap_bytes += bytes - old;
     }
     memcpy(s->palette[i], rows3x4, count * sizeof(gfx_rows));
+    world->instance_version++;
     update_bounds(world, i, false);
     return true;
 }

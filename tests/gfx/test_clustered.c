@@ -131,6 +131,7 @@ static void test_counts(void) {
     gfx_fixture f = open_scene(64, 36, 50, 5.0f);
     core_metrics *m = core_metrics_create();
     set(&f, "render", "auto");
+    set(&f, "shadows", "off");
     TEST_ASSERT_TRUE(gfx_device_render(f.device, f.world));
     gfx_world_counts(f.world, m);
     TEST_ASSERT_EQUAL_DOUBLE(51.0, core_metrics_get(m, CORE_COUNT_LIGHTS));

@@ -138,6 +138,7 @@ static void test_instancing_equals_single_draws(void) {
     gfx_fixture f = gfx_fixture_open(96, 64, true);
     core_metrics *m = core_metrics_create();
     scatter(&f, 200);
+    TEST_ASSERT_TRUE(gfx_world_set(f.world, "shadows", "off"));
     gfx_look(f.world, core_v3(0, 0, 30), core_v3(0, 0, 0));
     float *a = gfx_fixture_hdr(&f);
     gfx_world_counts(f.world, m);
