@@ -26,6 +26,7 @@ static bool try_axis(const phys_geom *a, const phys_geom *b, core_vec3 d, core_v
     core_vec3 n = at < 0.0f ? core_v3_scale(axis, -1.0f) : axis;
     float sep = core_absf(at) - support_extent(a, axis) - support_extent(b, axis);
     if (sep > margin) {
+        best->separation = sep;
         return false;
     }
     if (sep > best->separation + bias) {
@@ -217,6 +218,7 @@ static void face_contact(const phys_geom *a, const phys_geom *b, const axis_pick
 void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *m) {
     axis_pick pick;
     if (!find_axis(a, b, margin, &pick)) {
+        m->apart = pick.separation;
         return;
     }
     if (pick.kind >= 6) {

@@ -271,20 +271,30 @@ static bool find_normal(const phys_geom *a, const phys_geom *b, float margin, co
         *separation = skin - r.overlap.depth;
         return true;
     }
-    if (!(r.closest.distance < margin)) {
-        return false;
-    }
+    *separation = r.closest.distance;
     core_vec3 d = core_v3_sub(b->position, a->position);
     *normal = phys_unit(core_v3_sub(r.closest.b, r.closest.a), phys_unit(d, core_v3(0, 1, 0)));
     *point = core_v3_scale(core_v3_add(r.closest.a, r.closest.b), 0.5f);
-    *separation = r.closest.distance;
+    if (!(r.closest.distance < margin)) {
+        return false;
+    }
     return true;
 }
 
+// m->normal may hold the axis that parted the pair last: most often it still does.
 void phys_collide_convex(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *m) {
-    core_vec3 n, point;
-    float sep;
+    core_vec3 n = m->normal, point;
+    float sep = 0.0f;
+    if (n.x != 0.0f || n.y != 0.0f || n.z != 0.0f) {
+        sep = lowest(b, n) + lowest(a, core_v3_scale(n, -1.0f)) - round_radius(a) - round_radius(b);
+        if (sep > margin) {
+            m->apart = sep;
+            return;
+        }
+    }
     if (!find_normal(a, b, margin, &n, &point, &sep)) {
+        m->apart = sep;
+        m->normal = n;
         return;
     }
     feature fa, fb;

@@ -139,7 +139,7 @@ static bool visit_same(const visit *a, const visit *b) {
 }
 
 static bool overlaps(const phys_geom *region, const phys_geom *shape) {
-    phys_manifold m;
+    phys_manifold m = {0};
     phys_collide(region, shape, 0.0f, &m);
     return m.count != 0;
 }

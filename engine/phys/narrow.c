@@ -13,7 +13,7 @@ static void refresh_fixed_ball(phys_world *w, uint32_t i, float dt) {
     phys_geom ga = phys_shape_geom(w, phys_slot_row(&w->shapes.set, c->sa[i]));
     phys_geom gb = phys_shape_geom(w, phys_slot_row(&w->shapes.set, c->sb[i]));
     core_vec3 dv = phys_get3(b->vx, b->vy, b->vz, ra);
-    phys_manifold m;
+    phys_manifold m = {0};
     phys_collide(&ga, &gb, PHYS_MARGIN + core_v3_length(dv) * dt, &m);
     // Far pairs count only when the gap can close within this step.
     if (m.count != 0 &&
@@ -78,37 +78,60 @@ static float quat_dot(core_quat a, core_quat b) {
     return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
 }
 
-// Keeps the points of a pair that hardly moved: anchors and normal stay, only the gaps are renewed
-// (contact recycling, after Catto, Box3D 2026). Besides saving the search, frozen arms keep a
-// loaded stack from swaying: its lever arms do not follow every tremor. False: the pair must be
-// searched.
-static bool recycle(phys_manifold *m, core_vec3 dc, core_quat qa, core_quat qb, float extent) {
-    float ca = quat_dot(qa, m->qa), cb = quat_dot(qb, m->qb);
-    if (m->count == 0 || core_absf(ca) < PHYS_KEEP_COSINE || core_absf(cb) < PHYS_KEEP_COSINE) {
-        return false;
-    }
+// How the pair is seen now: what its last search is compared with.
+typedef struct pair_view {
+    core_quat qa, qb;
+    core_vec3 dc;     // from the centre of a to that of b
+    core_vec3 offset; // centre of the smaller one seen from the larger
+    float extent;     // farthest reach of the smaller one: how far a turn can move its points
+} pair_view;
+
+static float extent_of(const phys_shapes *s, uint32_t i) {
+    float e = core_v3_length(s->half[i]) + s->radius[i];
+    return (e > 0.0f ? e : PHYS_FAR) + core_v3_length(s->position[i]);
+}
+
+static pair_view view_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t ra,
+                           uint32_t rb) {
+    const phys_bodies *b = &w->bodies;
+    pair_view v = {.qa = phys_body_quat(b, ra), .qb = phys_body_quat(b, rb)};
+    v.dc = core_v3_sub(phys_get3(b->cx, b->cy, b->cz, rb), phys_get3(b->cx, b->cy, b->cz, ra));
+    float ea = extent_of(&w->shapes, sa), eb = extent_of(&w->shapes, sb);
+    v.extent = CORE_MIN(ea, eb);
+    v.offset =
+        eb > ea ? phys_unrotate(v.qb, core_v3_scale(v.dc, -1.0f)) : phys_unrotate(v.qa, v.dc);
+    return v;
+}
+
+// Bound on how far any point moved, seen from the other body, since the last search.
+static float moved_since(const phys_manifold *m, const pair_view *v) {
     core_quat before = phys_quat_mul(phys_conj(m->qa), m->qb);
-    core_quat now = phys_quat_mul(phys_conj(qa), qb);
-    core_quat turn = phys_quat_mul(phys_conj(before), now);
-    core_vec3 v = {turn.x, turn.y, turn.z};
-    core_vec3 d = core_v3_sub(phys_unrotate(qa, dc), m->offset);
-    if (core_v3_length(d) + 2.0f * core_v3_length(v) * extent > PHYS_KEEP_DISTANCE) {
+    core_quat turn = phys_quat_mul(phys_conj(before), phys_quat_mul(phys_conj(v->qa), v->qb));
+    float angle = 2.0f * core_v3_length(core_v3(turn.x, turn.y, turn.z));
+    return core_v3_length(core_v3_sub(v->offset, m->offset)) + angle * v->extent;
+}
+
+// Keeps what is known of a pair that hardly moved: one that was apart stays so; of one in touch,
+// anchors and normal stay and only the gaps are renewed (contact recycling, after Catto, Box3D
+// 2026). Besides saving the search, frozen arms keep a loaded stack from swaying: its lever arms do
+// not follow every tremor. False: the pair must be searched.
+static bool recycle(phys_manifold *m, const pair_view *v, float reach) {
+    if (m->count == 0) {
+        return m->apart > 0.0f && moved_since(m, v) + reach < m->apart;
+    }
+    float ca = quat_dot(v->qa, m->qa), cb = quat_dot(v->qb, m->qb);
+    if (core_absf(ca) < PHYS_KEEP_COSINE || core_absf(cb) < PHYS_KEEP_COSINE ||
+        moved_since(m, v) > PHYS_KEEP_DISTANCE) {
         return false;
     }
-    core_quat ta = phys_quat_mul(qa, phys_conj(m->qa)), tb = phys_quat_mul(qb, phys_conj(m->qb));
+    core_quat ta = phys_quat_mul(v->qa, phys_conj(m->qa));
+    core_quat tb = phys_quat_mul(v->qb, phys_conj(m->qb));
     for (uint32_t k = 0; k < m->count; k++) {
         phys_point *p = &m->point[k];
         core_vec3 arm = core_v3_sub(phys_rotate(tb, p->rb), phys_rotate(ta, p->ra));
-        p->separation = p->base + core_v3_dot(core_v3_add(dc, arm), m->normal);
+        p->separation = p->base + core_v3_dot(core_v3_add(v->dc, arm), m->normal);
     }
     return true;
-}
-
-// Farthest reach of the pair's smaller side: how much a turn can move a point.
-static float smaller_extent(const phys_shapes *s, uint32_t a, uint32_t b) {
-    float ea = core_v3_length(s->half[a]) + s->radius[a];
-    float eb = core_v3_length(s->half[b]) + s->radius[b];
-    return ea > 0.0f && eb > 0.0f ? CORE_MIN(ea, eb) : CORE_MAX(ea, eb);
 }
 
 static void refresh_contact(phys_world *w, uint32_t i, float dt) {
@@ -117,18 +140,18 @@ static void refresh_contact(phys_world *w, uint32_t i, float dt) {
     uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
     uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
     uint32_t ra = c->a[i], rb = c->b[i];
-    core_vec3 ca = phys_get3(b->cx, b->cy, b->cz, ra), cb = phys_get3(b->cx, b->cy, b->cz, rb);
-    core_quat qa = phys_body_quat(b, ra), qb = phys_body_quat(b, rb);
-    core_vec3 dc = core_v3_sub(cb, ca);
+    core_vec3 dv =
+        core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
+    float reach = PHYS_MARGIN + core_v3_length(dv) * dt;
+    pair_view v = view_pair(w, sa, sb, ra, rb);
     phys_manifold *old = &c->manifold[i];
-    if (recycle(old, dc, qa, qb, smaller_extent(&w->shapes, sa, sb))) {
+    if (recycle(old, &v, reach)) {
         return;
     }
     phys_geom ga = phys_shape_geom(w, sa), gb = phys_shape_geom(w, sb);
-    core_vec3 dv =
-        core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
-    phys_manifold m = {.qa = qa, .qb = qb, .offset = phys_unrotate(qa, dc)};
-    phys_collide(&ga, &gb, PHYS_MARGIN + core_v3_length(dv) * dt, &m);
+    phys_manifold m = {.normal = old->normal, .qa = v.qa, .qb = v.qb, .offset = v.offset};
+    phys_collide(&ga, &gb, reach, &m);
+    core_vec3 ca = phys_get3(b->cx, b->cy, b->cz, ra), cb = phys_get3(b->cx, b->cy, b->cz, rb);
     for (uint32_t k = 0; k < m.count; k++) {
         m.point[k].ra = core_v3_sub(m.point[k].ra, ca);
         m.point[k].rb = core_v3_sub(m.point[k].rb, cb);

@@ -117,7 +117,9 @@ typedef struct phys_manifold {
     core_vec3 friction; // N s, on b, sum over the points
     float twist;        // N m s about the normal, on b
     phys_point point[4];
-    // Where both bodies were when the points were made: rotations, and b's centre seen from a.
+    float apart; // without points: the pair's distance is at least this (m)
+    // Where both bodies were when the pair was searched: rotations, and the centre of the smaller
+    // one seen from the larger.
     core_quat qa, qb;
     core_vec3 offset;
 } phys_manifold;

@@ -82,7 +82,7 @@ static void test_capsule_pair_against_closed_form(void) {
                                  core_v3(0, 1, 0), 0.25f);
     core_quat turned = core_quat_axis_angle(core_v3(0, 0, 1), 1.0f);
     phys_geom b = phys_geom_make(PHYS_CAPSULE, core_v3(0, 0, 0.7f), turned, core_v3(0, 1, 0), 0.5f);
-    phys_manifold m;
+    phys_manifold m = {0};
     phys_collide(&a, &b, 0.1f, &m);
     TEST_ASSERT_EQUAL_UINT32(1, m.count); // crossed lines 0.7 apart, radii 0.75 together
     TEST_ASSERT_FLOAT_WITHIN(1e-5f, -0.05f, m.point[0].separation);
@@ -102,7 +102,7 @@ static void test_box_hull_agrees_with_box(void) {
         core_vec3 to = {1.7f * sinf(t), 1.3f * cosf(1.3f * t), 0.9f};
         phys_geom a = phys_geom_make(PHYS_BOX, core_v3(0, 0, 0), qa, core_v3(1, 0.5f, 0.75f), 0);
         phys_geom b = phys_geom_make(PHYS_BOX, to, qb, core_v3(0.8f, 0.4f, 0.6f), 0);
-        phys_manifold exact, general = {0};
+        phys_manifold exact = {0}, general = {0};
         phys_collide(&a, &b, 0.02f, &exact);
         phys_collide_convex(&a, &b, 0.02f, &general);
         float d = 1e9f, e = 1e9f;
