@@ -206,6 +206,11 @@ static void sort_by_low(solid **s, solid **tmp, uint32_t n) {
     }
 }
 
+// Bodies of layers that do not collide may be in one another.
+static bool meet(const phys_world *w, uint32_t a, uint32_t b) {
+    return (w->rule[w->bodies.layer[a]] >> w->bodies.layer[b] & 1u) != 0;
+}
+
 static void measure_overlap(phys_world *w, phys_accuracy *out) {
     uint32_t n = core_columns_count(&w->shapes.set), used = 0, pairs = 0;
     solid *all = CORE_ARENA_ARRAY(&w->scratch, solid, n + 1);
@@ -223,7 +228,7 @@ static void measure_overlap(phys_world *w, phys_accuracy *out) {
         const solid *a = order[i];
         for (uint32_t j = i + 1; j < used && order[j]->lo < a->hi; j++) {
             const solid *b = order[j];
-            if (a->body == b->body || (a->fixed && b->fixed)) {
+            if (a->body == b->body || (a->fixed && b->fixed) || !meet(w, a->body, b->body)) {
                 continue;
             }
             double d = depth(a, b);
@@ -300,7 +305,7 @@ static void measure_tunnelling(phys_world *w) {
         solid slab = make_solid(w, i);
         for (uint32_t k = 0; k < core_columns_count(&b->set); k++) {
             core_vec3 from = b->seen[k];
-            if (b->type[k] == PHYS_DYNAMIC && !b->through[k] &&
+            if (b->type[k] == PHYS_DYNAMIC && !b->through[k] && meet(w, k, row) &&
                 crossed(&slab, (v3){from.x, from.y, from.z}, (v3){b->cx[k], b->cy[k], b->cz[k]},
                         0.1)) {
                 b->through[k] = 1;
