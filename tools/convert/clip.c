@@ -277,7 +277,9 @@ static int compare_times(const void *a, const void *b) {
 // The file keeps floats: times that become equal there are one key.
 static void sort_times(times *l) {
     uint32_t n = 0;
-    qsort(l->t, l->count, sizeof *l->t, compare_times);
+    if (l->count) {
+        qsort(l->t, l->count, sizeof *l->t, compare_times);
+    }
     for (uint32_t i = 0; i < l->count; i++) {
         if (n == 0 || (float)l->t[i] > (float)l->t[n - 1]) {
             l->t[n++] = l->t[i];
