@@ -94,6 +94,9 @@ void gfx_world_counts(const gfx_world *world, core_metrics *metrics) {
 
 void *gfx_grow(gfx_growing *array, size_t element, size_t extra) {
     size_t need = (array->count + extra) * element;
+    if (need == 0) {
+        return array->data;
+    }
     if (need > array->bytes) {
         size_t bytes = array->bytes ? array->bytes : 1024;
         while (bytes < need) {
