@@ -139,6 +139,45 @@ bool nav_graph_search(nav_world *world, const nav_query *query, nav_result *resu
 void nav_last_path(const nav_world *world, const nav_result *result, uint32_t *out,
                    uint32_t capacity);
 
+// ---- uniform grids ----
+// Cells of one size on the ground plane, each free or blocked; moves to the eight neighbours, a
+// diagonal one only where both cells beside it are free. Steps cost 1 and sqrt(2) cell sizes. Costs
+// are compared as whole numbers 408 and 577, whose ratio is sqrt(2) to 1.5e-6: a path is longer
+// than the shortest by at most that share.
+#define NAV_GRID_MOST 8192u // cells along a side
+
+typedef struct nav_grid_desc {
+    uint32_t width, height; // cells, 1..NAV_GRID_MOST
+    const uint8_t *blocked; // [width*height] row after row, 0 free; NULL: all free
+    uint32_t cookie;
+} nav_grid_desc;
+nav_grid_desc nav_grid_desc_default(void);
+nav_grid nav_grid_create(nav_world *world, const nav_grid_desc *desc); // null + core_fail
+bool nav_grid_destroy(nav_world *world, nav_grid grid);
+bool nav_grid_alive(const nav_world *world, nav_grid grid);
+bool nav_grid_size(const nav_world *world, nav_grid grid, uint32_t *width, uint32_t *height);
+bool nav_grid_set_blocked(nav_world *world, nav_grid grid, uint32_t x, uint32_t y, bool blocked);
+bool nav_grid_blocked(const nav_world *world, nav_grid grid, uint32_t x,
+                      uint32_t y); // outside: yes
+
+typedef struct nav_cell {
+    uint32_t x, y;
+} nav_cell;
+typedef enum nav_grid_method {
+    NAV_GRID_JUMP, // jump point search; the default, far faster but on random scatter
+    NAV_GRID_ASTAR // A* with a bucket queue, the baseline
+} nav_grid_method;
+
+// Shortest path from cell to cell. Writes the first `capacity` cells of it, every step of the way,
+// into out (may be NULL). result->cost is in cell sizes; result->reached is y*width + x of the last
+// cell. False + core_fail for cells outside. A blocked start or goal is NAV_NO_PATH.
+//
+// A*: buckets after Dial, "Algorithm 360", CACM 12 (1969), one for each value of f. Jump points:
+// Harabor and Grastien, "Improving jump point search", ICAPS 2014: scans of 64 cells at a time (B)
+// without queueing diagonal turning points (P), for the rule that forbids to cut corners.
+bool nav_grid_search(nav_world *world, nav_grid grid, nav_grid_method method, nav_cell start,
+                     nav_cell goal, nav_result *result, nav_cell *out, uint32_t capacity);
+
 // ---- paths ----
 // A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when
 // its graph has changed; nav_path_update does so at once.

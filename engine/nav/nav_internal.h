@@ -130,14 +130,75 @@ typedef struct nav_scratch {
     uint32_t stamp; // of the last query; records are cleared when it wraps
 } nav_scratch;
 
+// ---- uniform grids ----
+
+// Padded by a blocked cell on every side: cell (x, y) is number (y + 1) * stride + x + 1.
+typedef struct nav_grid_data {
+    uint32_t width, height, stride;
+    uint8_t *moves; // [cells] bit d: the step in direction d is allowed; 0 where blocked
+    // Blocked cells as bits, by row and by column, both padded to whole words.
+    uint64_t *row, *column;
+    uint32_t row_words, column_words;
+} nav_grid_data;
+typedef struct nav_grid_head {
+    uint64_t version; // counts changes, and `content` sums them up
+    uint64_t content;
+} nav_grid_head;
+#define NAV_GRID_COLUMNS(X)                                                                        \
+    X(nav_grid_head, head, CORE_COLUMN_STATE)                                                      \
+    X(nav_grid_data *, data, 0)
+CORE_COLUMNS_DECLARE(nav_grids, NAV_GRID_COLUMNS)
+
+// Directions 0..7: +x, +x+y, +y, -x+y, -x, -x-y, -y, +x-y. Odd ones are diagonal.
+#define NAV_STRAIGHT   408u
+#define NAV_DIAGONAL   577u
+#define NAV_DIRECTIONS 8
+extern const int8_t nav_dir_x[NAV_DIRECTIONS], nav_dir_y[NAV_DIRECTIONS];
+
+typedef struct nav_grid_record {
+    uint32_t g;
+    uint32_t next; // A*: in its bucket; jumps: place in the heap
+    uint32_t back; // A*: before it in its bucket; jumps: the cell it was reached from
+    uint32_t mark; // query number * 16 + direction it was reached in (8: none)
+} nav_grid_record;
+
+#define NAV_BUCKETS 2048u // f grows by at most 2 * NAV_DIAGONAL in one step
+typedef struct nav_grid_scratch {
+    nav_grid_record *record; // [capacity]
+    uint64_t *heap;          // [capacity] f << 32 | cell
+    uint32_t capacity;
+    uint32_t query;                    // < 2^28
+    uint32_t bucket[NAV_BUCKETS];      // first cell, 0: empty (cell 0 is padding)
+    uint64_t filled[NAV_BUCKETS / 64]; // bit: the bucket is not empty
+} nav_grid_scratch;
+
+typedef struct nav_grid_search_args {
+    const nav_grid_data *g;
+    nav_grid_scratch *s;
+    uint32_t start, goal;    // cell numbers
+    uint32_t goal_x, goal_y; // padded
+    uint32_t expanded;
+} nav_grid_search_args;
+// Both leave records from which nav_grid.c reads the path; true when the goal was reached.
+bool nav_grid_astar(nav_grid_search_args *q);
+bool nav_grid_jump(nav_grid_search_args *q);
+
+static inline uint32_t nav_grid_octile(uint32_t x, uint32_t y, uint32_t gx, uint32_t gy) {
+    uint32_t dx = x > gx ? x - gx : gx - x, dy = y > gy ? y - gy : gy - y;
+    uint32_t longer = CORE_MAX(dx, dy), shorter = CORE_MIN(dx, dy);
+    return NAV_STRAIGHT * longer + (NAV_DIAGONAL - NAV_STRAIGHT) * shorter;
+}
+
 struct nav_world {
     core_jobs *jobs;
     core_metrics *metrics;
     nav_graphs graph;
     nav_paths path;
     nav_agents agent;
+    nav_grids grid;
     nav_scratch scratch;
-    nav_heuristic heuristic; // of paths
+    nav_grid_scratch *grid_scratch; // made with the first grid
+    nav_heuristic heuristic;        // of paths
     float weight;
     bool avoid;
 };
@@ -152,6 +213,8 @@ void nav_cells_release(nav_cells *cells);
 void nav_scratch_fit(nav_scratch *scratch, uint32_t nodes);
 void nav_scratch_release(nav_scratch *scratch);
 double nav_octile(double dx, double dy, double dz);
+// nav_grid.c
+void nav_grid_scratch_release(nav_world *world);
 // nav_path.c
 void nav_path_refresh(nav_world *world, uint32_t row); // plans when its graph has changed
 // nav_agent.c

@@ -24,6 +24,7 @@ nav_world *nav_world_create(const nav_world_desc *desc) {
     w->weight = 1.0f;
     uint32_t agents = desc->max_agents ? desc->max_agents : DEFAULT_AGENTS;
     if (!nav_graphs_init(&w->graph, "nav.graphs", MOST_GRAPHS) ||
+        !nav_grids_init(&w->grid, "nav.grids", MOST_GRAPHS) ||
         !nav_paths_init(&w->path, "nav.paths", CORE_MAX(agents, MOST_PATHS)) ||
         !nav_agents_init(&w->agent, "nav.agents", agents)) {
         nav_world_destroy(w);
@@ -42,6 +43,11 @@ void nav_world_destroy(nav_world *w) {
     for (uint32_t n = core_columns_count(&w->graph.set); n > 0; n--) {
         nav_graph_destroy(w, core_columns_handle(&w->graph.set, n - 1));
     }
+    for (uint32_t n = core_columns_count(&w->grid.set); n > 0; n--) {
+        nav_grid_destroy(w, core_columns_handle(&w->grid.set, n - 1));
+    }
+    nav_grid_scratch_release(w);
+    core_columns_release(&w->grid.set);
     core_columns_release(&w->graph.set);
     core_columns_release(&w->path.set);
     core_columns_release(&w->agent.set);
@@ -66,11 +72,13 @@ bool nav_world_step(nav_world *w, float dt) {
 
 static const char *const heuristics[] = {"euclid", "octile", "zero", NULL};
 static const char *const avoidances[] = {"none", NULL};
+static const char *const grid_methods[] = {"jump", "astar", NULL};
 static const char *const settings[] = {"heuristic", "weight", "avoidance"};
 
 const char *const *nav_method_names(const char *kind) {
     static const char *const none[] = {NULL};
     return strcmp(kind, "heuristic") == 0   ? heuristics
+           : strcmp(kind, "grid") == 0      ? grid_methods
            : strcmp(kind, "avoidance") == 0 ? avoidances
                                             : none;
 }
@@ -121,7 +129,7 @@ bool nav_world_set(nav_world *w, const char *name, const char *value) {
 // ---- contents ----
 
 int nav_world_state(const nav_world *w, const core_columns **out, int capacity) {
-    const core_columns *own[] = {&w->graph.set, &w->path.set, &w->agent.set};
+    const core_columns *own[] = {&w->graph.set, &w->grid.set, &w->path.set, &w->agent.set};
     int n = 0;
     for (size_t i = 0; i < CORE_COUNT_OF(own); i++, n++) {
         if (out && n < capacity) {
@@ -147,6 +155,16 @@ size_t nav_world_bytes(const nav_world *w) {
         const nav_graph_data *g = w->graph.data[row];
         bytes += sizeof *g + core_columns_bytes(&g->node.set) + core_columns_bytes(&g->link.set) +
                  g->cells.size * sizeof *g->cells.head;
+    }
+    for (uint32_t row = 0; row < core_columns_count(&w->grid.set); row++) {
+        const nav_grid_data *g = w->grid.data[row];
+        bytes += sizeof *g + (size_t)g->stride * (g->height + 2) +
+                 sizeof(uint64_t) * ((size_t)g->row_words * (g->height + 2) +
+                                     (size_t)g->column_words * (g->width + 2));
+    }
+    if (w->grid_scratch) {
+        bytes += sizeof *w->grid_scratch +
+                 w->grid_scratch->capacity * (sizeof(nav_grid_record) + sizeof(uint64_t));
     }
     for (uint32_t row = 0; row < core_columns_count(&w->path.set); row++) {
         bytes += w->path.nodes[row].capacity * sizeof(uint32_t);

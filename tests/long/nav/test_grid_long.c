@@ -1,0 +1,28 @@
+// Every query of the Moving AI scenarios, by jump points and by A*.
+#include "support/moving_ai.h"
+#include "unity.h"
+
+static nav_world *world;
+
+void setUp(void) {
+    nav_world_desc desc = nav_world_desc_default();
+    world = nav_world_create(&desc);
+}
+void tearDown(void) { nav_world_destroy(world); }
+
+static void all_queries(void) {
+    int tested = 0;
+    for (size_t i = 0; i < CORE_COUNT_OF(moving_ai_maps); i++) {
+        tested += moving_ai_check(world, moving_ai_maps[i], 1);
+    }
+    if (tested == 0) {
+        TEST_IGNORE_MESSAGE("../shared/data/nav is absent: no scenarios to compare with");
+    }
+    TEST_ASSERT_TRUE(tested > 10000);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(all_queries);
+    return UNITY_END();
+}
