@@ -1,28 +1,60 @@
-// Shading of every mesh: direct light, ambient hemisphere, emission. Linear radiance out.
-#include "common.glsl"
+// Shading of every mesh: direct light, ambient light, emission. Linear radiance out; alpha is
+// coverage, and the radiance of blended surfaces is premultiplied by it.
+#include "material.glsl"
 #include "brdf.glsl"
 #include "lights.glsl"
 
 in vec3 v_world;
 in vec3 v_normal;
-in vec2 v_uv;
-in vec4 v_color;
-flat in uint v_material;
+#ifdef USE_TEXTURES
+in vec4 v_tangent;
+#endif
 layout(location = 0) out vec4 o_color;
 
-layout(std430, binding = GFX_SSBO_MATERIALS) readonly buffer MaterialBlock {
-    gfx_material_block materials[];
-};
+#ifdef USE_TEXTURES
+// Tangent frame of the mesh, or from the derivatives of position and texture coordinate where the
+// mesh has none (Schueler, "Normal mapping without precomputed tangents", 2013).
+mat3 tangentFrame(vec3 n) {
+    vec3 t = v_tangent.xyz, b;
+    if (dot(t, t) > 1e-8) {
+        t = normalize(t - n * dot(n, t));
+        return mat3(t, cross(n, t) * v_tangent.w, n);
+    }
+    vec3 px = dFdx(v_world), py = dFdy(v_world);
+    vec2 ux = dFdx(v_uv), uy = dFdy(v_uv);
+    vec3 a = cross(py, n), c = cross(n, px);
+    t = a * ux.x + c * uy.x;
+    b = a * ux.y + c * uy.y;
+    float scale = inversesqrt(max(max(dot(t, t), dot(b, b)), 1e-20));
+    return mat3(t * scale, b * scale, n);
+}
+#endif
+
+vec3 shadingNormal(gfx_material_block m) {
+    vec3 n = normalize(v_normal);
+#ifdef USE_TEXTURES
+    vec3 texel = texture(u_normal, v_uv).xyz * (255.0 / 127.0) - 128.0 / 127.0;
+    texel.xy *= m.params.y;
+    n = normalize(tangentFrame(n) * texel);
+#endif
+    return gl_FrontFacing ? n : -n;
+}
 
 Surface surfaceOf(gfx_material_block m, vec4 base) {
     Surface s;
+    float metallic = m.emissive_metallic.w, roughness = m.params.x;
+#ifdef USE_TEXTURES
+    vec4 maps = texture(u_metallicRoughness, v_uv);
+    metallic *= maps.b;
+    roughness *= maps.g;
+#endif
     s.position = v_world;
     s.view = viewDirection(v_world);
-    s.normal = normalize(gl_FrontFacing ? v_normal : -v_normal);
+    s.normal = shadingNormal(m);
     s.flatNormal = normalize(cross(dFdx(v_world), dFdy(v_world)));
     s.flatNormal *= dot(s.flatNormal, s.view) < 0.0 ? -1.0 : 1.0;
     s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
-    setMaterial(s, base.rgb, m.emissive_metallic.w, m.params.x);
+    setMaterial(s, base.rgb, metallic, roughness);
     return s;
 }
 
@@ -38,7 +70,24 @@ vec3 ambientLight(Surface s) {
 
 void main() {
     gfx_material_block m = materials[v_material];
-    vec4 base = m.base_color * v_color;
+    vec4 base = baseColor(m);
+#ifdef USE_ALPHA_MASK
+    if (base.a < m.params.w) {
+        discard;
+    }
+    base.a = 1.0;
+#endif
     Surface s = surfaceOf(m, base);
-    o_color = vec4(directLight(s) + ambientLight(s) + m.emissive_metallic.rgb, base.a);
+    vec3 emission = m.emissive_metallic.rgb;
+    float ambient = 1.0;
+#ifdef USE_TEXTURES
+    emission *= texture(u_emissive, v_uv).rgb;
+    ambient = 1.0 + m.params.z * (texture(u_occlusion, v_uv).r - 1.0);
+#endif
+    vec3 radiance = directLight(s) + ambientLight(s) * ambient + emission;
+#ifdef USE_BLEND
+    o_color = vec4(radiance * base.a, base.a);
+#else
+    o_color = vec4(radiance, 1.0);
+#endif
 }

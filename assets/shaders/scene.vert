@@ -2,12 +2,10 @@
 #include "common.glsl"
 
 layout(location = GFX_ATTR_POSITION) in vec3 a_position;
-#ifndef DEPTH_ONLY
 layout(location = GFX_ATTR_NORMAL) in vec3 a_normal;
 layout(location = GFX_ATTR_TANGENT) in vec4 a_tangent;
 layout(location = GFX_ATTR_UV) in vec2 a_uv;
 layout(location = GFX_ATTR_COLOR) in vec4 a_color;
-#endif
 
 layout(std430, binding = GFX_SSBO_INSTANCES) readonly buffer InstanceBlock {
     gfx_instance_block instances[];
@@ -30,14 +28,17 @@ layout(location = GFX_U_INSTANCE) uniform uint u_instance;
 // The depth prepass and the shading pass must land on the same depth bits (GL_EQUAL).
 invariant gl_Position;
 
-#ifndef DEPTH_ONLY
-out vec3 v_world;
-out vec3 v_normal;
+#if !defined(DEPTH_ONLY) || defined(USE_ALPHA_MASK)
+#define WITH_MATERIAL
 out vec2 v_uv;
 out vec4 v_color;
 flat out uint v_material;
-#ifdef USE_NORMAL_MAP
-out vec4 v_tangent;
+#endif
+#ifndef DEPTH_ONLY
+out vec3 v_world;
+out vec3 v_normal;
+#ifdef USE_TEXTURES
+out vec4 v_tangent; // zero when the mesh has none
 #endif
 #endif
 
@@ -73,6 +74,11 @@ void main() {
 #endif
     vec3 p = position * world;
     gl_Position = u_view.view_proj * vec4(p, 1.0);
+#ifdef WITH_MATERIAL
+    v_uv = a_uv;
+    v_color = a_color * instance.color;
+    v_material = instance.index.x;
+#endif
 #ifndef DEPTH_ONLY
     vec3 normal = a_normal;
 #ifdef USE_SKINNING
@@ -80,10 +86,7 @@ void main() {
 #endif
     v_world = p;
     v_normal = transformNormal(world, normal);
-    v_uv = a_uv;
-    v_color = a_color * instance.color;
-    v_material = instance.index.x;
-#ifdef USE_NORMAL_MAP
+#ifdef USE_TEXTURES
     vec3 tangent = a_tangent.xyz;
 #ifdef USE_SKINNING
     tangent = vec4(tangent, 0.0) * skin;

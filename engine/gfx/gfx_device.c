@@ -143,7 +143,8 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_shadows_release(&d->shadows);
     gfx_clusters_release(&d->clusters);
     gfx_cluster_lights_release(&d->cluster_lights);
-    glDeleteBuffers(1, &d->material_buffer);
+    gfx_materials_release(&d->materials);
+    gfx_textures_release(&d->textures);
     glDeleteTextures(1, &d->dfg_texture);
     glDeleteVertexArrays(1, &d->empty_vao);
     release_targets(d);

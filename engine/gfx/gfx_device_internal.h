@@ -41,11 +41,41 @@ typedef struct gfx_geometry { // all meshes of one world in common buffers
 bool gfx_geometry_update(gfx_geometry *g, const gfx_world *world);
 void gfx_geometry_release(gfx_geometry *g);
 
+// ---- textures and materials (gfx_textures.c) ----
+
+typedef struct gfx_texture {
+    char path[CORE_NAME_MAX];
+    bool srgb;
+    GLuint name; // 0: it could not be read
+    uint32_t width, height;
+} gfx_texture;
+typedef struct gfx_textures {
+    gfx_growing all; // gfx_texture
+} gfx_textures;
+// The texture of an image file, read once. NULL when it cannot be read, logged at the first try.
+// Valid until the next call.
+const gfx_texture *gfx_texture_get(gfx_device *device, const char *path, bool srgb);
+void gfx_textures_release(gfx_textures *textures);
+
+enum { GFX_MATERIAL_TEXTURES = 5 }; // units GFX_TEX_BASE_COLOR to GFX_TEX_EMISSIVE
+typedef struct gfx_material_state { // what drawing with a material needs
+    uint32_t features;
+    bool double_sided;
+    GLuint texture[GFX_MATERIAL_TEXTURES];
+} gfx_material_state;
+typedef struct gfx_material_cache {
+    GLuint buffer;
+    gfx_growing state; // gfx_material_state: the default, then one a row
+    uint64_t world, version;
+} gfx_material_cache;
+void gfx_materials_update(gfx_device *device, const gfx_world *world);
+void gfx_materials_release(gfx_material_cache *cache);
+
 // ---- draw lists (gfx_draw_list.c) ----
 
 typedef struct gfx_sort_key {
     uint64_t key;
-    uint32_t row, pad;
+    uint32_t row, material; // 0: the default, else 1 + its row
 } gfx_sort_key;
 // Sorts by key, equal keys in the order they stand in. scratch holds as many.
 void gfx_sort_keys(gfx_sort_key *keys, gfx_sort_key *scratch, uint32_t count);
@@ -57,19 +87,23 @@ typedef struct gfx_draw_command { // one entry of a GL_DRAW_INDIRECT_BUFFER
 } gfx_draw_command;
 typedef struct gfx_batch { // consecutive commands with one state
     uint32_t features;
+    uint32_t material; // 0 when it has no textures
+    bool double_sided;
     uint32_t first, count;
 } gfx_batch;
-typedef struct gfx_draw_list { // one view's part of the frame's batches
-    uint32_t first_batch, batches, triangles;
+typedef struct gfx_draw_list { // one view's part of the frame's batches: opaque ones, then blended
+    uint32_t first_batch, opaque, batches, triangles;
 } gfx_draw_list;
 
-// A frame: begin, one list a view, upload once, submit lists with `features` added to the batches'.
+// A frame: begin, one list a view, upload once, submit batches with `features` added to their own.
 void gfx_draws_begin(gfx_device *device);
 void gfx_draws_add_view(gfx_device *device, const gfx_world *world, const gfx_view *view,
                         gfx_draw_list *list);
 void gfx_draws_upload(gfx_device *device, const gfx_world *world);
 bool gfx_draws_submit(gfx_device *device, gfx_world *world, const gfx_draw_list *list,
                       const char *fragment, uint32_t features);
+bool gfx_draws_submit_blended(gfx_device *device, gfx_world *world, const gfx_draw_list *list,
+                              uint32_t features);
 
 // ---- shadows (gfx_shadow.c) ----
 
@@ -129,19 +163,11 @@ typedef struct gfx_quad_run { // quads that share a texture
     GLuint texture;
     uint32_t features;
 } gfx_quad_run;
-enum { GFX_IMAGES = 256 };
-typedef struct gfx_image_entry {
-    char path[CORE_NAME_MAX];
-    GLuint texture; // 0: it could not be read
-    uint32_t width, height;
-} gfx_image_entry;
 typedef struct gfx_quads {
     gfx_stream stream;
     gfx_growing quads, runs;
     gfx_font *font;
     bool font_tried;
-    gfx_image_entry image[GFX_IMAGES];
-    uint32_t images;
 } gfx_quads;
 bool gfx_quads_draw(gfx_device *device, const gfx_world *world);
 void gfx_quads_release(gfx_quads *quads);
@@ -166,8 +192,8 @@ struct gfx_device {
     gfx_clusters clusters;
     gfx_cluster_lights cluster_lights;
     gfx_shadows shadows;
-    GLuint material_buffer;
-    uint64_t material_world, material_version;
+    gfx_textures textures;
+    gfx_material_cache materials;
     GLsync fence[GFX_FRAMES];
     uint32_t frame; // turn of the streams
     gfx_quads quads;

@@ -36,11 +36,6 @@ void gfx_sort_keys(gfx_sort_key *keys, gfx_sort_key *scratch, uint32_t count) {
     }
 }
 
-// Key: program features 16 | mesh 24 | unused; instances of a mesh keep the order of their rows.
-static uint64_t sort_key(uint32_t features, uint32_t mesh) {
-    return (uint64_t)features << 48 | (uint64_t)(mesh & 0xffffffu) << 24;
-}
-
 static const gfx_mesh_place *place_of(const gfx_geometry *g, gfx_mesh mesh) {
     if (mesh.index >= g->places || g->place[mesh.index].generation != mesh.generation) {
         return NULL; // destroyed
@@ -49,6 +44,42 @@ static const gfx_mesh_place *place_of(const gfx_geometry *g, gfx_mesh mesh) {
 }
 
 void gfx_draws_begin(gfx_device *d) { d->rows.count = d->commands.count = d->batches.count = 0; }
+
+static const gfx_material_state *material_state(const gfx_device *d, uint32_t material) {
+    return (const gfx_material_state *)d->materials.state.data + material;
+}
+
+// What a draw call needs of an instance besides its mesh.
+static gfx_batch state_of(const gfx_device *d, const gfx_world *world, const gfx_sort_key *key) {
+    const gfx_material_state *m = material_state(d, key->material);
+    const gfx_mesh_place *place = place_of(&d->geometry, world->instances.mesh[key->row]);
+    bool skinned = place->skinned && world->instances.palette[key->row];
+    return (gfx_batch){.features = m->features | (skinned ? GFX_FEATURE_SKINNING : 0),
+                       .material = m->features & GFX_FEATURE_TEXTURES ? key->material : 0,
+                       .double_sided = m->double_sided};
+}
+
+static bool same_state(const gfx_batch *a, const gfx_batch *b) {
+    return a->features == b->features && a->material == b->material &&
+           a->double_sided == b->double_sided;
+}
+
+// Opaque: program and cull state, textures, mesh; a mesh's instances keep the order of their rows.
+// Blended ones come after, from far to near: bits of a positive float order as the float does.
+static uint64_t sort_key(const gfx_batch *state, const gfx_world *world, const gfx_view *view,
+                         uint32_t row) {
+    const gfx_instances *s = &world->instances;
+    if (state->features & GFX_FEATURE_BLEND) {
+        core_vec3 d = core_v3_sub(core_v3(s->cx[row], s->cy[row], s->cz[row]), view->position);
+        float d2 = core_v3_dot(d, d);
+        uint32_t bits;
+        memcpy(&bits, &d2, sizeof bits);
+        return 1ull << 63 | (uint64_t)~bits << 16;
+    }
+    uint64_t program = (uint64_t)(state->features << 1 | state->double_sided) & 0x7fff;
+    return program << 48 | (uint64_t)(state->material & 0xffffff) << 24 |
+           (s->mesh[row].index & 0xffffff);
+}
 
 // Keys of the rows that are in the view and have a mesh.
 static uint32_t make_keys(gfx_device *d, const gfx_world *world, const gfx_view *view) {
@@ -66,21 +97,28 @@ static uint32_t make_keys(gfx_device *d, const gfx_world *world, const gfx_view 
     gfx_sort_key *keys = gfx_grow(&d->keys, sizeof *keys, count);
     gfx_sort_key *scratch = gfx_grow(&d->scratch, sizeof *scratch, count);
     for (uint32_t i = 0; i < count; ++i) {
-        const gfx_mesh_place *place = place_of(&d->geometry, s->mesh[rows[i]]);
-        if (place) {
-            uint32_t features = place->skinned && s->palette[rows[i]] ? GFX_FEATURE_SKINNING : 0;
-            keys[kept++] = (gfx_sort_key){sort_key(features, s->mesh[rows[i]].index), rows[i], 0};
+        if (place_of(&d->geometry, s->mesh[rows[i]])) {
+            uint32_t material = core_columns_row(&world->materials.set, s->material[rows[i]]);
+            gfx_sort_key *k = &keys[kept++];
+            *k = (gfx_sort_key){.row = rows[i],
+                                .material = material == CORE_NO_ROW ? 0 : material + 1};
+            gfx_batch state = state_of(d, world, k);
+            k->key = sort_key(&state, world, view, k->row);
         }
     }
     gfx_sort_keys(keys, scratch, kept);
     return kept;
 }
 
-static gfx_batch *last_batch(gfx_device *d, const gfx_draw_list *list, uint32_t features) {
+// Continues the list's last batch when the state is the same, else starts one.
+static gfx_batch *batch_for(gfx_device *d, gfx_draw_list *list, const gfx_batch *state) {
     gfx_batch *batch = (gfx_batch *)d->batches.data + d->batches.count - 1;
-    if (list->batches == 0 || batch->features != features) {
+    if (list->batches == 0 || !same_state(batch, state)) {
         batch = gfx_grow(&d->batches, sizeof *batch, 1);
-        *batch = (gfx_batch){.features = features, .first = (uint32_t)d->commands.count};
+        *batch = *state;
+        batch->first = (uint32_t)d->commands.count;
+        list->batches++;
+        list->opaque += !(state->features & GFX_FEATURE_BLEND);
     }
     return batch;
 }
@@ -92,17 +130,20 @@ void gfx_draws_add_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     uint32_t *rows = gfx_grow(&d->rows, sizeof *rows, count);
     bool merge = world->settings.instancing && d->draw_parameters;
     gfx_draw_command *command = NULL;
+    const gfx_mesh_place *last = NULL;
     *list = (gfx_draw_list){.first_batch = (uint32_t)d->batches.count};
     for (uint32_t i = 0; i < count; ++i) {
         const gfx_mesh_place *place = place_of(&d->geometry, world->instances.mesh[keys[i].row]);
+        gfx_batch state = state_of(d, world, &keys[i]);
+        uint32_t batches = list->batches;
+        gfx_batch *batch = batch_for(d, list, &state);
         rows[i] = keys[i].row;
         list->triangles += place->index_count / 3;
-        if (merge && i && keys[i].key == keys[i - 1].key) {
+        if (merge && place == last && batches == list->batches) {
             command->instances++;
             continue;
         }
-        gfx_batch *batch = last_batch(d, list, (uint32_t)(keys[i].key >> 48));
-        list->batches = (uint32_t)d->batches.count - list->first_batch;
+        last = place;
         batch->count++;
         command = gfx_grow(&d->commands, sizeof *command, 1);
         *command = (gfx_draw_command){.count = place->index_count,
@@ -175,22 +216,52 @@ static void submit_batch(gfx_device *d, const gfx_batch *batch, bool instanced) 
     }
 }
 
-bool gfx_draws_submit(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
-                      const char *fragment, uint32_t features) {
+// The one place where programs, vertex arrays, textures and cull state change between draws.
+static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end,
+                   const char *fragment, uint32_t features) {
     bool instanced = world->settings.instancing && d->draw_parameters;
     features |= instanced ? GFX_FEATURE_INSTANCING : 0;
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, d->draw_block.name);
-    const gfx_batch *batch = (const gfx_batch *)d->batches.data + list->first_batch;
-    for (uint32_t i = 0; i < list->batches; ++i, ++batch) {
-        GLuint program =
-            gfx_shaders_get(&d->shaders, "scene.vert", fragment, features | batch->features);
+    const gfx_batch *batch = (const gfx_batch *)d->batches.data + first;
+    GLuint used = 0;
+    bool two_sided = false;
+    for (uint32_t i = first; i < end; ++i, ++batch) {
+        uint32_t own = batch->features;
+        if (features & GFX_FEATURE_DEPTH_ONLY && !(own & GFX_FEATURE_ALPHA_MASK)) {
+            own &= GFX_FEATURE_SKINNING; // depth needs no more of an opaque material
+        }
+        GLuint program = gfx_shaders_get(&d->shaders, "scene.vert", fragment, features | own);
         if (!program) {
             return false;
         }
-        glUseProgram(program);
-        glBindVertexArray(d->geometry.vao[batch->features & GFX_FEATURE_SKINNING ? 1 : 0]);
+        if (program != used) {
+            glUseProgram(program);
+            glBindVertexArray(d->geometry.vao[own & GFX_FEATURE_SKINNING ? 1 : 0]);
+            world->stats.programs++;
+            used = program;
+        }
+        if (own & GFX_FEATURE_TEXTURES) {
+            glBindTextures(0, GFX_MATERIAL_TEXTURES, material_state(d, batch->material)->texture);
+        }
+        if (batch->double_sided != two_sided) {
+            (batch->double_sided ? glDisable : glEnable)(GL_CULL_FACE);
+            two_sided = batch->double_sided;
+        }
         submit_batch(d, batch, instanced);
         world->stats.draws += batch->count;
     }
+    glEnable(GL_CULL_FACE);
     return true;
+}
+
+bool gfx_draws_submit(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
+                      const char *fragment, uint32_t features) {
+    return submit(d, world, list->first_batch, list->first_batch + list->opaque, fragment,
+                  features);
+}
+
+bool gfx_draws_submit_blended(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
+                              uint32_t features) {
+    return submit(d, world, list->first_batch + list->opaque, list->first_batch + list->batches,
+                  "scene.frag", features);
 }

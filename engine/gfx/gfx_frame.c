@@ -44,36 +44,6 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     gfx_stream_bind(&d->view_block, GL_UNIFORM_BUFFER, GFX_UBO_VIEW, sizeof *b, d->frame);
 }
 
-static void write_material(const core_material_data *m, struct gfx_material_block *out) {
-    *out = (struct gfx_material_block){
-        .emissive_metallic = {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
-        .params = {m->roughness, m->normal_scale, m->occlusion_strength, m->alpha_cutoff},
-    };
-    memcpy(out->base_color, m->base_color, sizeof out->base_color);
-}
-
-// Materials change rarely: the buffer is made anew when one did.
-static void upload_materials(gfx_device *d, const gfx_world *world) {
-    uint32_t n = core_columns_count(&world->materials.set);
-    bool current = d->material_buffer && d->material_world == world->id &&
-                   d->material_version == world->material_version;
-    if (!current) {
-        struct gfx_material_block *all = core_alloc((n + 1) * sizeof *all);
-        gfx_material_desc plain = gfx_material_desc_default();
-        write_material(&plain.data, &all[0]);
-        for (uint32_t i = 0; i < n; ++i) {
-            write_material(&world->materials.data[i], &all[i + 1]);
-        }
-        glDeleteBuffers(1, &d->material_buffer);
-        glCreateBuffers(1, &d->material_buffer);
-        glNamedBufferStorage(d->material_buffer, (GLsizeiptr)((n + 1) * sizeof *all), all, 0);
-        core_free(all);
-        d->material_world = world->id;
-        d->material_version = world->material_version;
-    }
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_MATERIALS, d->material_buffer);
-}
-
 // ---- passes ----
 
 static uint32_t scene_features(const gfx_device *d, const gfx_world *world, bool clustered) {
@@ -83,6 +53,19 @@ static uint32_t scene_features(const gfx_device *d, const gfx_world *world, bool
         features |= world->settings.shadows == GFX_SHADOWS_SOFT ? GFX_FEATURE_SOFT_SHADOWS : 0;
     }
     return features;
+}
+
+// Over what is there, from far to near, reading depth and leaving it.
+static bool pass_blended(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
+                         uint32_t features) {
+    d->passes++;
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); // premultiplied: highlights stay on clear glass
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    bool ok = gfx_draws_submit_blended(d, world, list, features);
+    glDisable(GL_BLEND);
+    return ok;
 }
 
 static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
@@ -112,6 +95,9 @@ static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *lis
         }
     }
     bool ok = gfx_draws_submit(d, world, list, "scene.frag", features);
+    if (ok && list->batches > list->opaque) {
+        ok = pass_blended(d, world, list, features);
+    }
     glDepthMask(GL_TRUE);
     return ok;
 }
@@ -166,6 +152,7 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CULL);
     bool ok = gfx_geometry_update(&d->geometry, world);
     if (ok) {
+        gfx_materials_update(d, world);
         gfx_draws_begin(d);
         gfx_draws_add_view(d, world, &view, &list);
         gfx_shadows_plan(d, world, &view);
@@ -180,7 +167,7 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     gfx_lights_upload(d, world, &view, &lights);
     core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
-    upload_materials(d, world);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_MATERIALS, d->materials.buffer);
     ok = gfx_shadows_draw(d, world);
     upload_view(d, world, &view, &lights);
     ok = ok && pass_scene(d, world, &list, scene_features(d, world, lights.clustered)) &&

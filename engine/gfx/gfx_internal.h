@@ -114,7 +114,7 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
 } gfx_settings;
 
 typedef struct gfx_frame_stats {
-    uint32_t clusters, light_refs, draws, triangles, visible;
+    uint32_t clusters, light_refs, draws, programs, triangles;
 } gfx_frame_stats;
 
 struct gfx_world {

@@ -1,9 +1,6 @@
 // Draws a world's screen-space calls: text, rectangles, images, in call order.
 #include "gfx/gfx_device_internal.h"
 
-#include <stb_image.h>
-
-#include <stdio.h>
 #include <string.h>
 
 void gfx_quads_release(gfx_quads *q) {
@@ -11,56 +8,7 @@ void gfx_quads_release(gfx_quads *q) {
     gfx_growing_release(&q->quads);
     gfx_growing_release(&q->runs);
     gfx_font_release(q->font);
-    for (uint32_t i = 0; i < q->images; ++i) {
-        glDeleteTextures(1, &q->image[i].texture);
-    }
     *q = (gfx_quads){0};
-}
-
-static GLuint upload_image(const uint8_t *rgba, int width, int height) {
-    GLuint t;
-    glCreateTextures(GL_TEXTURE_2D, 1, &t);
-    glTextureStorage2D(t, 1, GL_RGBA8, width, height);
-    glTextureSubImage2D(t, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
-    glTextureParameteri(t, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(t, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(t, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    return t;
-}
-
-static void load_image(gfx_device *d, gfx_image_entry *e) {
-    size_t size;
-    void *file = core_vfs_read(d->vfs, e->path, &size);
-    if (!file) {
-        return;
-    }
-    int width, height, channels;
-    uint8_t *rgba = stbi_load_from_memory(file, (int)size, &width, &height, &channels, 4);
-    if (rgba) {
-        e->texture = upload_image(rgba, width, height);
-        e->width = (uint32_t)width, e->height = (uint32_t)height;
-    } else {
-        core_fail("%s: no picture that can be read (%s)", e->path, stbi_failure_reason());
-    }
-    stbi_image_free(rgba);
-    core_free(file);
-}
-
-// Each path is tried once: a missing image is logged once and drawn as nothing.
-static const gfx_image_entry *find_image(gfx_device *d, const char *path) {
-    gfx_quads *q = &d->quads;
-    for (uint32_t i = 0; i < q->images; ++i) {
-        if (strcmp(q->image[i].path, path) == 0) {
-            return &q->image[i];
-        }
-    }
-    if (q->images == GFX_IMAGES || !d->vfs) {
-        return NULL;
-    }
-    gfx_image_entry *e = &q->image[q->images++];
-    snprintf(e->path, sizeof e->path, "%s", path);
-    load_image(d, e);
-    return e;
 }
 
 // Quads that follow one another with one texture are one draw.
@@ -98,11 +46,11 @@ static void add_command(gfx_device *d, const gfx_world *world, const gfx_command
             extend_run(q, gfx_font_texture(q->font), GFX_FEATURE_TEXT, before);
         }
     } else {
-        const gfx_image_entry *e = find_image(d, text);
-        if (e && e->texture) {
-            add_rect(q, c, c->w > 0.0f ? c->w : (float)e->width,
-                     c->h > 0.0f ? c->h : (float)e->height);
-            extend_run(q, e->texture, GFX_FEATURE_IMAGE, before);
+        const gfx_texture *t = gfx_texture_get(d, text, false);
+        if (t) {
+            add_rect(q, c, c->w > 0.0f ? c->w : (float)t->width,
+                     c->h > 0.0f ? c->h : (float)t->height);
+            extend_run(q, t->name, GFX_FEATURE_IMAGE, before);
         }
     }
 }

@@ -13,6 +13,9 @@
     X(SKINNING, "USE_SKINNING")                                                                    \
     X(SHADOWS, "USE_SHADOWS")                                                                      \
     X(SOFT_SHADOWS, "USE_SOFT_SHADOWS")                                                            \
+    X(TEXTURES, "USE_TEXTURES")                                                                    \
+    X(ALPHA_MASK, "USE_ALPHA_MASK")                                                                \
+    X(BLEND, "USE_BLEND")                                                                          \
     X(DEPTH_ONLY, "DEPTH_ONLY")                                                                    \
     X(TEXT, "USE_TEXT")                                                                            \
     X(IMAGE, "USE_IMAGE")

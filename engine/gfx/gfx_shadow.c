@@ -260,12 +260,10 @@ bool gfx_shadows_draw(gfx_device *d, gfx_world *world) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_TRUE);
-    glDisable(GL_CULL_FACE); // single-sided walls cast shadows from both sides
     bool ok = true;
     for (uint32_t i = 0; i < s->count && ok; ++i) {
         ok = s->view[i].current || draw_layer(d, world, i, stride);
     }
-    glEnable(GL_CULL_FACE);
     gfx_stream_bind(&s->block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_SHADOWS, s->count * sizeof *block,
                     d->frame);
     glBindTextureUnit(GFX_TEX_SHADOW, s->texture);
