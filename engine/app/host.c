@@ -68,6 +68,45 @@ static float input_axis(void *ctx, const char *name, bool *known) {
     return app_input_axis(&((app_run *)ctx)->input, name, known);
 }
 
+// A recording holds what a bot sent; sent again, it would count twice.
+static bool send_key(void *ctx, const char *name, bool pressed) {
+    app_run *r = ctx;
+    return r->replay ? app_key_code(name) >= 0 : app_input_send_key(&r->input, name, pressed);
+}
+
+static bool send_axis(void *ctx, const char *name, float value) {
+    app_run *r = ctx;
+    return r->replay ? app_key_code(name) >= 0 : app_input_send_axis(&r->input, name, value);
+}
+
+static bool send_text(void *ctx, const char *utf8) {
+    app_run *r = ctx;
+    return r->replay || app_input_send_text(&r->input, utf8);
+}
+
+static void send_move(void *ctx, float x, float y) {
+    app_run *r = ctx;
+    gfx_event e = {.type = GFX_EVENT_MOUSE_MOVE, .x = x, .y = y};
+    if (!r->replay) {
+        app_input_queue(&r->input, &e);
+    }
+}
+
+static bool bind_action(void *ctx, const char *action, const char *keys) {
+    return app_input_bind(&((app_run *)ctx)->input, action, keys);
+}
+
+static bool action_binding(void *ctx, const char *action, char *keys, size_t size) {
+    return app_input_binding(&((app_run *)ctx)->input, action, keys, size);
+}
+
+static void set_cursor(void *ctx, int mode) {
+    app_run *r = ctx;
+    if (r->device) {
+        gfx_device_set_cursor(r->device, (gfx_cursor)mode);
+    }
+}
+
 static void set_pause(void *ctx, bool paused) { ((app_run *)ctx)->paused = paused; }
 
 static void set_time_scale(void *ctx, float scale) {
@@ -89,6 +128,13 @@ script_host app_host(app_run *r) {
                          .warning = warning,
                          .input_down = input_down,
                          .input_axis = input_axis,
+                         .send_key = send_key,
+                         .send_axis = send_axis,
+                         .send_text = send_text,
+                         .send_move = send_move,
+                         .bind = bind_action,
+                         .binding = action_binding,
+                         .cursor = set_cursor,
                          .pause = set_pause,
                          .time_scale = set_time_scale};
 }

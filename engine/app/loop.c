@@ -37,6 +37,13 @@ static void send_event(app_run *r, const gfx_event *e) {
     case GFX_EVENT_FOCUS:
         script_event(r->script, "focus", NULL, key, 1);
         break;
+    case GFX_EVENT_PAD:
+        script_event(r->script, "pad", NULL, key, 1);
+        break;
+    case GFX_EVENT_PAD_BUTTON:
+        script_event(r->script, "button", app_key_name(e->code + APP_PAD_CODE, letter), key, 1);
+        break;
+    case GFX_EVENT_PAD_AXIS: // getAxis has it, without the dead zone
     case GFX_EVENT_CLOSE:
         break;
     }

@@ -123,7 +123,7 @@ static set_block take_set(cursor *c) {
 }
 
 static bool event_ok(const gfx_event *e) {
-    return (unsigned)e->type <= GFX_EVENT_FOCUS && isfinite(e->x) && isfinite(e->y);
+    return (unsigned)e->type <= GFX_EVENT_PAD_AXIS && isfinite(e->x) && isfinite(e->y);
 }
 
 // Steps in the file; every block is walked once.

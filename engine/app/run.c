@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/hash.h"
@@ -177,7 +178,13 @@ static bool apply_setting(app_run *r, const char *name, const char *value) {
                core_fail("setting metrics.accuracy is '%s', expected on or off", value);
     }
     if (strncmp(name, "actions.", 8) == 0) {
-        return app_input_bind(&r->input, name + 8, value);
+        return app_input_bind(&r->input, name + 8, value) || core_fail("%s", core_last_error());
+    }
+    if (strcmp(name, "input.dead_zone") == 0) {
+        char *end;
+        r->input.dead_zone = strtof(value, &end);
+        return (end != value && !*end && r->input.dead_zone >= 0 && r->input.dead_zone <= 0.9f) ||
+               core_fail("setting input.dead_zone is '%s', expected 0 to 0.9", value);
     }
     return scene_setting(r->scene, name, value);
 }
@@ -408,6 +415,7 @@ app_run *app_run_create(const app_options *opt) {
     app_run *r = core_alloc(sizeof *r);
     r->opt = opt;
     r->time_scale = 1.0f;
+    app_input_init(&r->input);
     r->last_step = APP_OPEN_END;
     app_report_init(&r->report);
     r->report.scene_name = opt->scene;

@@ -169,7 +169,10 @@ typedef enum gfx_event_type {
     GFX_EVENT_TEXT,
     GFX_EVENT_RESIZE,
     GFX_EVENT_CLOSE,
-    GFX_EVENT_FOCUS
+    GFX_EVENT_FOCUS,
+    GFX_EVENT_PAD,        // a gamepad came (pressed 1) or went (0)
+    GFX_EVENT_PAD_BUTTON, // code: GLFW gamepad buttons, 0..14
+    GFX_EVENT_PAD_AXIS    // code: GLFW gamepad axes, 0..5; x: -1..1 (triggers too)
 } gfx_event_type;
 typedef struct gfx_event {
     gfx_event_type type;
@@ -179,6 +182,9 @@ typedef struct gfx_event {
 } gfx_event;
 // Next pending window event; false when none.
 bool gfx_device_poll(gfx_device *device, gfx_event *out);
+typedef enum gfx_cursor { GFX_CURSOR_NORMAL, GFX_CURSOR_HIDDEN, GFX_CURSOR_LOCKED } gfx_cursor;
+// Locked: hidden and held in the window, its motion goes on without bounds. No-op without a window.
+void gfx_device_set_cursor(gfx_device *device, gfx_cursor cursor);
 const char *gfx_device_name(const gfx_device *device); // GL_RENDERER
 bool gfx_device_software(const gfx_device *device);
 // What the receipt shows: passes of the last frame, shader variants made so far.

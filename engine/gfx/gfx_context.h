@@ -14,6 +14,7 @@ typedef struct gfx_context_table { // one for each kind of context
     void (*resize)(gfx_context *context, uint32_t width, uint32_t height);
     void (*present)(gfx_context *context);
     bool (*poll)(gfx_context *context, gfx_event *out);
+    void (*set_cursor)(gfx_context *context, gfx_cursor cursor); // NULL: no window
     bool window;
 } gfx_context_table;
 

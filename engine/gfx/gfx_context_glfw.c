@@ -15,6 +15,8 @@ typedef struct glfw_context {
     GLFWwindow *window;
     gfx_event event[QUEUE];
     uint32_t head, count;
+    int pad; // joystick that is the gamepad, -1: none
+    GLFWgamepadstate pad_state;
 } glfw_context;
 
 // GLFW is one per process: the last window to close ends it.
@@ -98,10 +100,47 @@ static void glfw_present(gfx_context *context) {
     glfwSwapBuffers(((glfw_context *)context)->window);
 }
 
+// GLFW has no events for gamepads: what changed since the last poll becomes events. One gamepad is
+// heard, the first that is plugged in.
+static void poll_pad(glfw_context *c) {
+    GLFWgamepadstate now = {0};
+    if (c->pad >= 0 && !glfwGetGamepadState(c->pad, &now)) {
+        c->pad = -1;
+        push(c->window, (gfx_event){.type = GFX_EVENT_PAD, .pressed = 0});
+    }
+    for (int i = GLFW_JOYSTICK_1; c->pad < 0 && i <= GLFW_JOYSTICK_LAST; i++) {
+        if (glfwJoystickIsGamepad(i) && glfwGetGamepadState(i, &now)) {
+            c->pad = i;
+            c->pad_state = (GLFWgamepadstate){0};
+            push(c->window, (gfx_event){.type = GFX_EVENT_PAD, .pressed = 1});
+        }
+    }
+    if (c->pad < 0) {
+        return;
+    }
+    for (int i = 0; i <= GLFW_GAMEPAD_BUTTON_LAST; i++) {
+        if (now.buttons[i] != c->pad_state.buttons[i]) {
+            push(c->window, (gfx_event){GFX_EVENT_PAD_BUTTON, i, now.buttons[i], 0, 0});
+        }
+    }
+    for (int i = 0; i <= GLFW_GAMEPAD_AXIS_LAST; i++) {
+        if (now.axes[i] != c->pad_state.axes[i]) {
+            push(c->window, (gfx_event){GFX_EVENT_PAD_AXIS, i, 0, now.axes[i], 0});
+        }
+    }
+    c->pad_state = now;
+}
+
+static void glfw_set_cursor(gfx_context *context, gfx_cursor cursor) {
+    static const int modes[] = {GLFW_CURSOR_NORMAL, GLFW_CURSOR_HIDDEN, GLFW_CURSOR_DISABLED};
+    glfwSetInputMode(((glfw_context *)context)->window, GLFW_CURSOR, modes[cursor]);
+}
+
 static bool glfw_poll(gfx_context *context, gfx_event *out) {
     glfw_context *c = (glfw_context *)context;
     if (c->count == 0) {
         glfwPollEvents();
+        poll_pad(c);
     }
     if (c->count == 0) {
         return false;
@@ -118,6 +157,7 @@ static const gfx_context_table glfw_table = {.destroy = glfw_destroy,
                                              .resize = glfw_resize,
                                              .present = glfw_present,
                                              .poll = glfw_poll,
+                                             .set_cursor = glfw_set_cursor,
                                              .window = true};
 
 static GLFWwindow *open_window(const gfx_device_desc *desc) {
@@ -152,6 +192,7 @@ gfx_context *gfx_context_glfw(const gfx_device_desc *desc) {
     glfw_context *c = core_alloc(sizeof *c);
     c->base.table = &glfw_table;
     c->window = window;
+    c->pad = -1;
     glfwSetWindowUserPointer(window, c);
     glfwSetKeyCallback(window, on_key);
     glfwSetCharCallback(window, on_text);

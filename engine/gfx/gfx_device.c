@@ -198,6 +198,12 @@ bool gfx_device_poll(gfx_device *device, gfx_event *out) {
     return device->context->table->poll(device->context, out);
 }
 
+void gfx_device_set_cursor(gfx_device *device, gfx_cursor cursor) {
+    if (device->context->table->set_cursor) {
+        device->context->table->set_cursor(device->context, cursor);
+    }
+}
+
 bool gfx_device_reload(gfx_device *device) {
     return device->context->table->make_current(device->context) &&
            gfx_shaders_reload(&device->shaders);

@@ -1,4 +1,4 @@
-// corsac.*: parameters, expectations, metrics, log, input, the loop.
+// corsac.*: parameters, expectations, metrics, log, the loop.
 #include "core/log.h"
 #include "script/internal.h"
 #include "script/json.h"
@@ -208,37 +208,6 @@ static int warn(script *s, lua_State *L, void *args) {
     return 0;
 }
 
-// ---- input ----
-
-typedef struct name_args {
-    const char *name;
-} name_args;
-
-static int is_down(script *s, lua_State *L, void *args) {
-    const char *name = ((name_args *)args)->name;
-    bool known = false;
-    bool down = s->host.input_down ? s->host.input_down(s->host.ctx, name, &known) : false;
-    if (!known) {
-        bind_error(L,
-                   "corsac.input.isDown: no key, button or action \"%s\"; actions are declared in "
-                   "corsac.conf (t.actions = {jump = \"space\"})",
-                   name);
-    }
-    lua_pushboolean(L, down);
-    return 1;
-}
-
-static int get_axis(script *s, lua_State *L, void *args) {
-    const char *name = ((name_args *)args)->name;
-    bool known = false;
-    float value = s->host.input_axis ? s->host.input_axis(s->host.ctx, name, &known) : 0.0f;
-    if (!known) {
-        bind_error(L, "corsac.input.getAxis: no axis \"%s\"", name);
-    }
-    lua_pushnumber(L, (double)value);
-    return 1;
-}
-
 // ---- the loop ----
 
 typedef struct exit_args {
@@ -386,20 +355,10 @@ static const bind_fn metrics_functions[] = {
      .run = metrics_get},
     {0}};
 
-static const bind_fn input_functions[] = {
-    {"isDown", "Whether a key, mouse button or action is held at this step.",
-     BIND_ARGS({"name", BIND_STRING, BIND_AT(name_args, name), "\"space\", \"mouse1\", an action"}),
-     BIND_RETURNS({"down", "boolean", NULL}), sizeof(name_args), BIND_RUNNING, .run = is_down},
-    {"getAxis", "Value of an input axis at this step.",
-     BIND_ARGS({"name", BIND_STRING, BIND_AT(name_args, name), "\"mousex\", an action"}),
-     BIND_RETURNS({"value", "number", NULL}), sizeof(name_args), BIND_RUNNING, .run = get_axis},
-    {0}};
-
 static const bind_module modules[] = {
     {"corsac", "The run: parameters, time, log.", root_functions},
     {"corsac.expect", "Checks that make a scene a test.", expect_functions},
     {"corsac.metrics", "The run's figures.", metrics_functions},
-    {"corsac.input", "Keys, buttons and actions, sampled once per step.", input_functions},
     {0}};
 
 const bind_room bind_core_room = {"core", modules, NULL};

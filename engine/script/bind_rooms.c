@@ -2,6 +2,7 @@
 #include "script/bind.h"
 
 extern const bind_room bind_core_room;
+extern const bind_room bind_input_room;
 extern const bind_room bind_tools_room;
 extern const bind_room bind_scene_room;
 extern const bind_room bind_phys_room;
@@ -11,7 +12,6 @@ extern const bind_room bind_nav_room;
 extern const bind_room bind_audio_room;
 
 const bind_room *const bind_rooms[] = {
-    &bind_core_room, &bind_tools_room, &bind_scene_room,
-    &bind_phys_room, &bind_gfx_room,   &bind_anim_room,
-    &bind_nav_room,  &bind_audio_room, NULL,
+    &bind_core_room, &bind_input_room, &bind_tools_room, &bind_scene_room, &bind_phys_room,
+    &bind_gfx_room,  &bind_anim_room,  &bind_nav_room,   &bind_audio_room, NULL,
 };

@@ -20,6 +20,15 @@ typedef struct script_host {
     // Input of this step; action or key by name ("space", "fire").
     bool (*input_down)(void *ctx, const char *name, bool *known);
     float (*input_axis)(void *ctx, const char *name, bool *known);
+    // What a person would do, queued for the next step; ignored during a replay. False: no such
+    // name.
+    bool (*send_key)(void *ctx, const char *name, bool pressed);
+    bool (*send_axis)(void *ctx, const char *name, float value);
+    bool (*send_text)(void *ctx, const char *utf8);
+    void (*send_move)(void *ctx, float x, float y);                // pointer, pixels
+    bool (*bind)(void *ctx, const char *action, const char *keys); // false + core_fail_quiet
+    bool (*binding)(void *ctx, const char *action, char *keys, size_t size);
+    void (*cursor)(void *ctx, int mode); // 0 normal, 1 hidden, 2 locked
     void (*pause)(void *ctx, bool paused);
     void (*time_scale)(void *ctx, float scale);
 } script_host;

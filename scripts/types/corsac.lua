@@ -704,18 +704,54 @@ function corsac.metrics.set(name, value) end
 ---@return number value
 function corsac.metrics.get(name) end
 
----Keys, buttons and actions, sampled once per step.
+---Keys, buttons, axes and actions, sampled once per step.
 corsac.input = {}
 
----Whether a key, mouse button or action is held at this step.
----@param name string "space", "mouse1", an action
+---Whether a key, button or action is held at this step.
+---@param name string "space", "a", "mouse1", "pad_a", an action
 ---@return boolean down
 function corsac.input.isDown(name) end
 
----Value of an input axis at this step.
----@param name string "mousex", an action
+---Value of an axis at this step: an action -1 to 1, a stick without its dead zone, the pointer and the wheel.
+---@param name string an action, "pad_leftx", "mouse_x", "mouse_y" (pixels), "move_x", "move_y", "scroll_x", "scroll_y"
 ---@return number value
 function corsac.input.getAxis(name) end
+
+---Binds an action to other keys, in place of those of corsac.conf.
+---@param action string a new name makes an action
+---@param keys string separated by commas; - before one pulls the axis down: "-a,d,pad_leftx"
+function corsac.input.bind(action, keys) end
+
+---The keys of an action as bind takes them, nil for unknown actions.
+---@param name string an action
+---@return string? keys
+function corsac.input.getBinding(name) end
+
+---How the pointer shows in a window; locked: hidden and held, for turning a camera.
+---@param mode "normal"|"hidden"|"locked"
+function corsac.input.setCursor(mode) end
+
+---Presses a key or button. As if a person did it: heard in the next step, recorded, ignored in a replay.
+---@param name string of a key or button
+function corsac.input.press(name) end
+
+---Releases a key or button. As if a person did it: heard in the next step, recorded, ignored in a replay.
+---@param name string of a key or button
+function corsac.input.release(name) end
+
+---Moves a stick or trigger of the gamepad. As if a person did it: heard in the next step, recorded, ignored in a replay.
+---@param name string "pad_leftx", "pad_rt"
+---@param value number stick -1 to 1, trigger 0 to 1
+function corsac.input.setAxis(name, value) end
+
+---Moves the pointer. As if a person did it: heard in the next step, recorded, ignored in a replay.
+---@param x number
+---@param y number
+function corsac.input.move(x, y) end
+
+---Types a text. As if a person did it: heard in the next step, recorded, ignored in a replay.
+---@param name string UTF-8
+function corsac.input.type(name) end
 
 ---Tasks of the step, events, containers.
 ---@class corsac
