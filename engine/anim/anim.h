@@ -40,6 +40,8 @@ void anim_world_destroy(anim_world *world);
 bool anim_world_update(anim_world *world, float dt);
 // Computes the palettes of visible instances from their present state. No state changes.
 void anim_world_pose(anim_world *world);
+// Settings by name: "pack" = metres (0: keep clips as keys), "batch" = on|off (off: one instance at
+// a time by plain C, the baseline).
 bool anim_world_set(anim_world *world, const char *name, const char *value);
 int anim_world_state(const anim_world *world, const core_columns **out, int capacity);
 size_t anim_world_bytes(const anim_world *world);
@@ -74,8 +76,11 @@ typedef struct anim_clip_event {
     char name[32]; // reported by anim_world_events
 } anim_clip_event;
 typedef struct anim_clip_desc {
-    const core_clip_data *data; // copied
-    anim_skeleton skeleton;     // bones without a track keep its bind pose
+    const core_clip_data *data; // copied; keys of any spacing
+    // In place of data: a compressed clip ("CAN2", see anim_clip_pack), copied.
+    const void *packed;
+    size_t packed_size;
+    anim_skeleton skeleton; // bones without a track keep its bind pose
     // Root motion: the horizontal translation (and `root_vertical`, the vertical one) of bone
     // `root_bone` leaves the pose and is reported by anim_instance_root_motion.
     bool root_motion, root_vertical;
@@ -85,6 +90,7 @@ typedef struct anim_clip_desc {
     uint32_t cookie;
 } anim_clip_desc;
 anim_clip_desc anim_clip_desc_default(void);
+// With anim_world_set "pack" = BOUND metres, clips given as keys are compressed here.
 // Refuses clips whose bone count differs from the skeleton's, unsorted or equal times, non-finite
 // numbers, zero quaternions and durations that are not > 0.
 anim_clip anim_clip_create(anim_world *world, const anim_clip_desc *desc);
@@ -93,9 +99,21 @@ bool anim_clip_alive(const anim_world *world, anim_clip clip);
 const char *anim_clip_name(const anim_world *world, anim_clip clip);
 float anim_clip_duration(const anim_world *world, anim_clip clip); // seconds; 0: stale
 anim_clip anim_clip_find(const anim_world *world, anim_skeleton skeleton, const char *name);
-// Keys of one bone; *count 0 when the bone has no track. Valid while the clip lives.
+// Keys of one bone; *count 0 when the bone has no track or the clip is compressed. Valid while the
+// clip lives.
 const core_key *anim_clip_keys(const anim_world *world, anim_clip clip, uint32_t bone,
                                uint32_t *count);
+
+// Compresses a clip: uniform keys, each track within its own range in 8 or 16 bits at the clip's
+// rate or less, so that every joint and every point `shell` metres from one along its axes stays
+// within `bound` metres of the source. Sampling then costs the same at any time and runs in
+// vectors. core_free the result, the bytes of a "CAN2" file. NULL + core_fail when the bound cannot
+// be kept.
+void *anim_clip_pack(const core_skeleton_data *skeleton, const core_clip_data *clip, float bound,
+                     float shell, size_t *size);
+// Stated error (m) and bytes of a compressed clip; false when it is kept as keys.
+bool anim_clip_packed(const anim_world *world, anim_clip clip, float *error, size_t *bytes);
+#define ANIM_SHELL_M 0.1f // the usual shell distance
 
 // A local pose: arrays of bone_count elements, the caller's.
 typedef struct anim_pose {

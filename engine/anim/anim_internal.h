@@ -3,6 +3,7 @@
 #define ANIM_INTERNAL_H
 
 #include "anim/anim.h"
+#include "anim/pack.h"
 #include "core/memory.h"
 
 #define ANIM_COOKIE 0x616e696du // "anim"
@@ -32,6 +33,9 @@ typedef struct anim_clip_res {
     core_clip_track *track;
     core_key *key;
     int32_t *track_of_bone; // [bones] -1 none
+    anim_pack *pack;        // compressed: no keys; NULL: raw
+    float *rest;            // with pack: [ANIM_COMPONENTS * stride] what no group of it gives
+    uint8_t *moved;         // with pack: [bones] bit per anim_pack_kind that a group gives
     anim_clip_event *event; // ascending time
     uint32_t event_count;
     bool root_motion;
@@ -136,7 +140,9 @@ struct anim_world {
     anim_instances instances;
     anim_players players;
     anim_chunks chunks;
-    float *palette; // [max_bones * 12] reserved
+    bool unbatched;   // pose one instance at a time
+    float pack_bound; // m: clips made from keys are compressed; 0: kept raw
+    float *palette;   // [max_bones * 12] reserved
     uint32_t max_bones, bones_placed, bones_committed, bones_live;
     core_arena scratch[CORE_JOBS_MAX_THREADS]; // one a worker, made when first used
     uint32_t scratch_count;
@@ -165,8 +171,14 @@ void anim_columns_blend(const float *a, const float *b, float alpha, uint32_t st
 // Model matrices (rows of 3x4, [bones * 12]) and palette of a column pose.
 void anim_columns_to_model(const anim_skeleton_res *s, const float *pose, float *model);
 void anim_model_palette(const anim_skeleton_res *s, const float *model, float *palette);
+void anim_clip_free(void *clip);
 void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c, float time,
                               float *out);
+// Palettes of all visible instances, by kernels (batch.c).
+void anim_batch_pose(anim_world *w);
+// One instance by itself: the scalar reference.
+void anim_pose_plain(anim_world *w, uint32_t row, core_arena *arena);
+float *anim_palette_of(const anim_world *w, uint32_t row);
 // The pose of an instance's present state.
 void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out);
 
@@ -178,7 +190,8 @@ void anim_snapshot_drop(anim_world *w, core_handle h);
 float anim_slot_clip_time(const anim_clip_res *c, const anim_slot *slot);
 float anim_fade_weight(const anim_world *w, uint32_t player);
 void anim_root_prepare(const anim_skeleton_res *s, anim_clip_res *c, bool vertical);
-void anim_root_pin(const anim_clip_res *c, uint32_t stride, float *pose);
+// Takes root motion out of the root bone's translation.
+void anim_root_pin(const anim_clip_res *c, float *x, float *y, float *z);
 // Displacement of the root between two clip times, model space.
 core_vec3 anim_root_between(const anim_clip_res *c, float t0, float t1);
 core_vec3 anim_root_translation(const anim_clip_res *c, float time);

@@ -45,22 +45,20 @@ static bool check_tracks(const core_clip_data *d) {
     return true;
 }
 
-static bool check_events(const anim_clip_desc *desc) {
+static bool check_events(const anim_clip_desc *desc, const core_clip_data *d) {
     for (uint32_t i = 0; i < desc->event_count; i++) {
         const anim_clip_event *e = &desc->event[i];
-        if (!(e->time >= 0 && e->time <= desc->data->duration) ||
-            !memchr(e->name, 0, sizeof e->name)) {
+        if (!(e->time >= 0 && e->time <= d->duration) || !memchr(e->name, 0, sizeof e->name)) {
             return core_fail(
                 "clip %s: event %u at %g s; expected 0..%g s and a name of at most %zu "
                 "bytes",
-                desc->data->name, i, e->time, desc->data->duration, sizeof e->name - 1);
+                d->name, i, e->time, d->duration, sizeof e->name - 1);
         }
     }
     return true;
 }
 
-static bool check(const anim_clip_desc *desc, const anim_skeleton_res *s) {
-    const core_clip_data *d = desc->data;
+static bool check(const anim_clip_desc *desc, const core_clip_data *d, const anim_skeleton_res *s) {
     if (!memchr(d->name, 0, CORE_NAME_MAX)) {
         return core_fail("clip: its name has no end within %d bytes", CORE_NAME_MAX);
     }
@@ -77,7 +75,7 @@ static bool check(const anim_clip_desc *desc, const anim_skeleton_res *s) {
         return core_fail("clip %s: root bone %u, the skeleton has %u", d->name, desc->root_bone,
                          s->bones);
     }
-    return check_tracks(d) && check_events(desc);
+    return check_tracks(d) && check_events(desc, d);
 }
 
 static int compare_events(const void *a, const void *b) {
@@ -88,8 +86,7 @@ static int compare_events(const void *a, const void *b) {
     return strcmp(x->name, y->name);
 }
 
-static anim_clip_res *copy_clip(const anim_clip_desc *desc) {
-    const core_clip_data *d = desc->data;
+static anim_clip_res *copy_clip(const anim_clip_desc *desc, const core_clip_data *d) {
     size_t keys = 0;
     for (uint32_t i = 0; i < d->track_count; i++) {
         keys += d->track[i].key_count;
@@ -131,18 +128,97 @@ static void copy_tracks(anim_clip_res *c, const core_clip_data *d) {
     }
 }
 
+// Columns of what a compressed clip does not move, and which bones' parts it does.
+static void prepare_pack(const anim_skeleton_res *s, anim_clip_res *c, anim_pack *pack) {
+    c->pack = pack;
+    c->rest = core_alloc(ANIM_COMPONENTS * s->stride * sizeof *c->rest);
+    c->moved = core_alloc(s->bones);
+    memcpy(c->rest, s->bind, ANIM_COMPONENTS * s->stride * sizeof *c->rest);
+    anim_pack_sample(pack, 0, s->stride, c->rest);
+    for (uint32_t i = 0; i < pack->group_count; i++) {
+        for (uint32_t t = 0; t < pack->group[i].tracks; t++) {
+            c->moved[pack->group[i].bone[t]] |= (uint8_t)(1u << pack->group[i].kind);
+        }
+    }
+}
+
+static void free_clip(anim_clip_res *c) {
+    core_free(c->pack);
+    core_free(c->rest);
+    core_free(c->moved);
+    core_free(c);
+}
+
+// The skeleton's own data again, as the encoder takes it.
+static void *pack_for(const anim_skeleton_res *s, const core_clip_data *d, float bound,
+                      size_t *size) {
+    core_vec3 *t = core_alloc(s->bones * 2u * sizeof *t), *k = t + s->bones;
+    core_quat *r = core_alloc(s->bones * sizeof *r);
+    anim_columns_to_pose(s->bind, s->bones, s->stride, (anim_pose){t, r, k});
+    core_skeleton_data data = {.bone_count = s->bones,
+                               .name = (const char(*)[CORE_NAME_MAX])s->name,
+                               .parent = s->parent,
+                               .translation = t,
+                               .rotation = r,
+                               .scale = k};
+    void *bytes = anim_pack_encode(&data, d, bound, ANIM_SHELL_M, 0, size);
+    core_free(t);
+    core_free(r);
+    return bytes;
+}
+
+static anim_pack *open_pack(const anim_clip_desc *desc) {
+    return desc->packed ? anim_pack_decode(desc->packed, desc->packed_size, "compressed clip")
+                        : NULL;
+}
+
+static anim_clip_res *make_clip(const anim_world *w, const anim_clip_desc *desc,
+                                const anim_skeleton_res *s) {
+    anim_pack *pack = open_pack(desc);
+    if (desc->packed && !pack) {
+        return NULL;
+    }
+    core_clip_data head = {0};
+    if (pack) { // a clip without tracks of its own
+        memcpy(head.name, pack->name, CORE_NAME_MAX);
+        head.duration = pack->duration;
+        head.bone_count = pack->bones;
+    }
+    const core_clip_data *d = pack ? &head : desc->data;
+    if (!check(desc, d, s)) {
+        core_free(pack);
+        return NULL;
+    }
+    bool compress = !pack && w->pack_bound > 0;
+    if (compress) {
+        size_t size = 0;
+        void *bytes = pack_for(s, d, w->pack_bound, &size);
+        pack = bytes ? anim_pack_decode(bytes, size, d->name) : NULL;
+        core_free(bytes);
+        memcpy(head.name, d->name, CORE_NAME_MAX);
+        head.duration = d->duration;
+        head.bone_count = d->bone_count;
+        d = pack ? &head : d; // what cannot be kept within the bound stays raw
+    }
+    anim_clip_res *c = copy_clip(desc, d);
+    copy_tracks(c, d);
+    if (pack) {
+        prepare_pack(s, c, pack);
+    }
+    return c;
+}
+
 anim_clip anim_clip_create(anim_world *w, const anim_clip_desc *desc) {
-    if (!desc || desc->cookie != ANIM_COOKIE || !desc->data) {
-        core_fail("anim_clip_create: the description was not made by anim_clip_desc_default(), or "
-                  "has no data");
+    if (!desc || desc->cookie != ANIM_COOKIE || (desc->data != NULL) == (desc->packed != NULL)) {
+        core_fail("anim_clip_create: expected a description made by anim_clip_desc_default() with "
+                  "either data or packed bytes");
         return CORE_NULL_HANDLE;
     }
     anim_skeleton_res *s = anim_get_skeleton(w, desc->skeleton);
-    if (!s || !check(desc, s)) {
+    anim_clip_res *c = s ? make_clip(w, desc, s) : NULL;
+    if (!c) {
         return CORE_NULL_HANDLE;
     }
-    anim_clip_res *c = copy_clip(desc);
-    copy_tracks(c, desc->data);
     if (desc->root_motion) {
         c->root_motion = true;
         c->root_bone = desc->root_bone;
@@ -150,12 +226,29 @@ anim_clip anim_clip_create(anim_world *w, const anim_clip_desc *desc) {
     }
     core_handle h = anim_resource_add(&w->clips, c);
     if (core_handle_is_null(h)) {
-        core_free(c);
+        free_clip(c);
         return h;
     }
     s->users++;
     return h;
 }
+
+void *anim_clip_pack(const core_skeleton_data *skeleton, const core_clip_data *clip, float bound,
+                     float shell, size_t *size) {
+    return anim_pack_encode(skeleton, clip, bound, shell, 0, size);
+}
+
+bool anim_clip_packed(const anim_world *w, anim_clip h, float *error, size_t *bytes) {
+    const anim_clip_res *c = anim_get_clip(w, h);
+    if (!c || !c->pack) {
+        return false;
+    }
+    *error = c->pack->error;
+    *bytes = c->pack->file_bytes;
+    return true;
+}
+
+void anim_clip_free(void *clip) { free_clip(clip); }
 
 bool anim_clip_destroy(anim_world *w, anim_clip h) {
     anim_clip_res *c = anim_get_clip(w, h);
@@ -167,7 +260,7 @@ bool anim_clip_destroy(anim_world *w, anim_clip h) {
                          c->name, c->users);
     }
     anim_get_skeleton(w, c->skeleton)->users--;
-    core_free(c);
+    free_clip(c);
     return core_columns_remove(&w->clips.set, h, NULL, NULL);
 }
 
@@ -235,7 +328,10 @@ core_key anim_track_sample(const core_clip_track *t, float time) {
 
 void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c, float time,
                               float *out) {
-    memcpy(out, s->bind, ANIM_COMPONENTS * s->stride * sizeof(float));
+    memcpy(out, c->pack ? c->rest : s->bind, ANIM_COMPONENTS * s->stride * sizeof(float));
+    if (c->pack) {
+        anim_pack_sample(c->pack, CORE_CLAMP(time, 0.0f, c->duration), s->stride, out);
+    }
     for (uint32_t i = 0; i < c->track_count; i++) {
         core_key k = anim_track_sample(&c->track[i], time);
         float *v = out + c->track[i].bone;
@@ -252,7 +348,8 @@ void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c
         v[ANIM_SZ * n] = k.scale.z;
     }
     if (c->root_motion) {
-        anim_root_pin(c, s->stride, out);
+        float *x = out + ANIM_TX * s->stride + c->root_bone;
+        anim_root_pin(c, x, x + s->stride, x + 2 * s->stride);
     }
 }
 

@@ -92,14 +92,57 @@ static void sample_track(const core_clip_track *t, double time, bone_pose *out) 
     mix_slerp(&a, &b, u, out);
 }
 
-static void pin_root(const anim_clip_res *c, bone_pose *root) {
-    int32_t track = c->track_of_bone[c->root_bone];
-    if (track < 0) {
+// A track of a compressed clip: its own rows, rotations by nlerp between them, as the clip defines.
+static void sample_packed_track(const anim_pack_group *g, uint32_t t, double duration, double time,
+                                bone_pose *out) {
+    double u = time * g->intervals / duration, d[2][4];
+    uint32_t row = u < g->intervals ? (uint32_t)u : g->intervals - 1;
+    u -= row;
+    for (uint32_t r = 0; r < 2; r++) {
+        double rest = 1;
+        for (uint32_t k = 0; k < 3; k++) {
+            size_t i = ((size_t)(row + r) * 3 + k) * g->stride + t;
+            uint32_t n = g->bytes == 1 ? g->rows[i] : ((const uint16_t *)(const void *)g->rows)[i];
+            d[r][k] = (double)g->low[k * g->stride + t] + (double)g->step[k * g->stride + t] * n;
+            rest -= d[r][k] * d[r][k];
+        }
+        d[r][3] = core_sqrt(rest > 0 ? rest : 0);
+    }
+    if (g->kind != ANIM_PACK_R) {
+        double *to = g->kind == ANIM_PACK_T ? out->t : out->s;
+        for (int k = 0; k < 3; k++) {
+            to[k] = d[0][k] + (d[1][k] - d[0][k]) * u;
+        }
         return;
     }
-    core_vec3 start = c->track[track].key[0].translation;
+    bone_pose a = {.q = {d[0][0], d[0][1], d[0][2], d[0][3]}};
+    bone_pose b = {.q = {d[1][0], d[1][1], d[1][2], d[1][3]}}, mixed;
+    mix_nlerp(&a, &b, u, &mixed);
+    const float *base = g->base + t;
+    double p[4] = {base[0], base[g->stride], base[2 * g->stride], base[3 * g->stride]};
+    const double *q = mixed.q;
+    out->q[0] = p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1];
+    out->q[1] = p[3] * q[1] + p[1] * q[3] + p[2] * q[0] - p[0] * q[2];
+    out->q[2] = p[3] * q[2] + p[2] * q[3] + p[0] * q[1] - p[1] * q[0];
+    out->q[3] = p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2];
+    normalize4(out->q);
+}
+
+static void sample_packed(const anim_clip_res *c, double time, bone_pose *out) {
+    for (uint32_t i = 0; i < c->pack->group_count; i++) {
+        const anim_pack_group *g = &c->pack->group[i];
+        for (uint32_t t = 0; t < g->tracks; t++) {
+            sample_packed_track(g, t, c->duration, time, &out[g->bone[t]]);
+        }
+    }
+}
+
+static void pin_root(const anim_clip_res *c, bone_pose *root) {
+    core_vec3 start = anim_root_translation(c, 0);
     double d[3] = {root->t[0] - start.x, root->t[1] - start.y, root->t[2] - start.z};
-    for (int r = 0; r < 3; r++) {
+    bool moves = c->pack ? (c->moved[c->root_bone] & 1u << ANIM_PACK_T) != 0
+                         : c->track_of_bone[c->root_bone] >= 0;
+    for (int r = 0; moves && r < 3; r++) {
         const float *m = c->root_remove + 3 * r;
         root->t[r] -= m[0] * d[0] + m[1] * d[1] + m[2] * d[2];
     }
@@ -125,6 +168,10 @@ static void sample_slot(const anim_world *w, const anim_skeleton_res *s, const a
     }
     const anim_clip_res *c = anim_get_clip(w, slot->clip);
     double time = anim_slot_clip_time(c, slot);
+    if (c->pack) {
+        bind_pose(s, c->rest, out);
+        sample_packed(c, time, out);
+    }
     for (uint32_t i = 0; i < c->track_count; i++) {
         sample_track(&c->track[i], time, &out[c->track[i].bone]);
     }

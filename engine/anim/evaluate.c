@@ -31,18 +31,18 @@ void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out) {
     core_arena_rewind(arena, mark);
 }
 
-static float *palette_of(const anim_world *w, uint32_t row) {
+float *anim_palette_of(const anim_world *w, uint32_t row) {
     return w->palette + (size_t)w->instances.place[row] * ANIM_PALETTE_FLOATS;
 }
 
-static void pose_instance(anim_world *w, uint32_t row, core_arena *arena) {
+void anim_pose_plain(anim_world *w, uint32_t row, core_arena *arena) {
     const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
     size_t mark = core_arena_mark(arena);
     float *pose = anim_scratch_pose(arena, s);
     float *model = CORE_ARENA_ARRAY(arena, float, 12u * s->bones);
     anim_evaluate(w, row, arena, pose);
     anim_columns_to_model(s, pose, model);
-    anim_model_palette(s, model, palette_of(w, row));
+    anim_model_palette(s, model, anim_palette_of(w, row));
     w->instances.posed[row] = 1;
     core_arena_rewind(arena, mark);
 }
@@ -52,7 +52,7 @@ static void pose_rows(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, u
     (void)chunk;
     for (uint32_t row = begin; row < end; row++) {
         if (!(w->instances.flags[row] & ANIM_HIDDEN)) {
-            pose_instance(w, row, &w->scratch[worker]);
+            anim_pose_plain(w, row, &w->scratch[worker]);
         }
     }
 }
@@ -61,7 +61,13 @@ static void pose_rows(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, u
 
 void anim_world_pose(anim_world *w) {
     core_stage_begin(w->metrics, CORE_STAGE_ANIM);
-    if (anim_scratch(w, (uint32_t)core_jobs_threads(w->jobs) - 1)) {
+    if (!anim_scratch(w, (uint32_t)core_jobs_threads(w->jobs) - 1)) {
+        core_stage_end(w->metrics, CORE_STAGE_ANIM);
+        return;
+    }
+    if (!w->unbatched) {
+        anim_batch_pose(w);
+    } else {
         core_jobs_for(w->jobs, core_columns_count(&w->instances.set), POSE_GRAIN, pose_rows, w);
     }
     core_stage_end(w->metrics, CORE_STAGE_ANIM);
@@ -89,7 +95,7 @@ const float *anim_instance_palette(const anim_world *w, anim_instance h, uint32_
         return NULL;
     }
     *bone_count = anim_get_skeleton(w, w->instances.skeleton[row])->bones;
-    return palette_of(w, row);
+    return anim_palette_of(w, row);
 }
 
 // The palette holds model * inverse bind; undoing the latter costs one product and saves a second

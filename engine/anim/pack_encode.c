@@ -700,8 +700,10 @@ void *anim_pack_encode(const core_skeleton_data *skeleton, const core_clip_data 
     allocate(&e, rate > 0 ? (double)rate : source_rate(clip));
     fill_source(&e);
     sink best = {0};
+    bool chosen = true;
     for (int attempt = 0; attempt < 8; attempt++) {
-        if (!choose_all(&e)) {
+        chosen = choose_all(&e); // says why not
+        if (!chosen) {
             break;
         }
         sink s = write_file(&e, 0);
@@ -716,7 +718,7 @@ void *anim_pack_encode(const core_skeleton_data *skeleton, const core_clip_data 
         }
         e.share *= 0.95 * (double)bound / fmax(error, 0.2 * (double)bound);
     }
-    if (!best.data) {
+    if (!best.data && chosen) {
         core_fail("clip %s: cannot be kept within %g m", clip->name, bound);
     }
     release(&e);

@@ -2,6 +2,8 @@
 // space to skinning palettes. Scalar and plain: the reference that the kernels are tested against.
 #include "anim/anim_internal.h"
 
+#include <string.h>
+
 void anim_columns_from_pose(anim_pose in, uint32_t bones, uint32_t n, float *out) {
     for (uint32_t b = 0; b < n; b++) {
         bool real = b < bones;
@@ -45,25 +47,33 @@ void anim_pose_blend(anim_pose a, anim_pose b, float alpha, uint32_t bones, anim
     }
 }
 
+// nlerp the short way; both are unit, so that the sum is no shorter than sqrt(1/2).
+static void mix_rotation(const float *a, const float *b, float left, float right, uint32_t n,
+                         float *out) {
+    float dot = ((a[0] * b[0] + a[n] * b[n]) + a[2 * n] * b[2 * n]) + a[3 * n] * b[3 * n], q[4];
+    float side = dot < 0 ? -right : right;
+    for (uint32_t k = 0; k < 4; k++) {
+        q[k] = a[k * n] * left + b[k * n] * side;
+    }
+    float inverse = 1 / core_sqrtf(((q[0] * q[0] + q[1] * q[1]) + q[2] * q[2]) + q[3] * q[3]);
+    for (uint32_t k = 0; k < 4; k++) {
+        out[k * n] = q[k] * inverse;
+    }
+}
+
 void anim_columns_blend(const float *a, const float *b, float alpha, uint32_t n, float *out) {
     float right = CORE_CLAMP(alpha, 0.0f, 1.0f), left = 1 - right;
+    if (right == 0 || right == 1) {
+        memmove(out, right == 0 ? a : b, ANIM_COMPONENTS * n * sizeof *out);
+        return;
+    }
     for (uint32_t i = 0; i < ANIM_COMPONENTS * n; i++) {
         if (i < ANIM_RX * n || i >= ANIM_SX * n) {
-            out[i] = right == 0 ? a[i] : right == 1 ? b[i] : a[i] * left + b[i] * right;
+            out[i] = a[i] * left + b[i] * right;
         }
     }
-    for (uint32_t i = 0; i < n; i++) {
-        core_quat q[2];
-        for (uint32_t k = 0; k < 2; k++) {
-            const float *v = (k ? b : a) + i;
-            q[k] = (core_quat){v[ANIM_RX * n], v[ANIM_RY * n], v[ANIM_RZ * n], v[ANIM_RW * n]};
-        }
-        core_quat r = right == 0 ? q[0] : right == 1 ? q[1] : core_quat_nlerp(q[0], q[1], right);
-        float *v = out + i;
-        v[ANIM_RX * n] = r.x;
-        v[ANIM_RY * n] = r.y;
-        v[ANIM_RZ * n] = r.z;
-        v[ANIM_RW * n] = r.w;
+    for (uint32_t i = ANIM_RX * n; i < ANIM_RY * n; i++) {
+        mix_rotation(a + i, b + i, left, right, n, out + i);
     }
 }
 

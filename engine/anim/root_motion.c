@@ -66,7 +66,25 @@ void anim_root_prepare(const anim_skeleton_res *s, anim_clip_res *c, bool vertic
     }
 }
 
+static core_vec3 packed_translation(const anim_clip_res *c, float time) {
+    for (uint32_t i = 0; i < c->pack->group_count; i++) {
+        const anim_pack_group *g = &c->pack->group[i];
+        for (uint32_t t = 0; g->kind == ANIM_PACK_T && t < g->tracks; t++) {
+            if (g->bone[t] == c->root_bone) {
+                float fraction, v[4];
+                uint32_t row = anim_pack_row(g, c->duration, time, &fraction);
+                anim_pack_sample_track(g, t, row, fraction, v);
+                return core_v3(v[0], v[1], v[2]);
+            }
+        }
+    }
+    return core_v3(0, 0, 0); // it stands still
+}
+
 core_vec3 anim_root_translation(const anim_clip_res *c, float time) {
+    if (c->pack) {
+        return packed_translation(c, time);
+    }
     int32_t track = c->track_of_bone[c->root_bone];
     if (track < 0) {
         return (core_vec3){0, 0, 0};
@@ -74,19 +92,19 @@ core_vec3 anim_root_translation(const anim_clip_res *c, float time) {
     return anim_track_sample(&c->track[track], time).translation;
 }
 
-void anim_root_pin(const anim_clip_res *c, uint32_t stride, float *pose) {
-    int32_t track = c->track_of_bone[c->root_bone];
-    if (track < 0) {
-        return;
+static bool root_moves(const anim_clip_res *c) {
+    return c->pack ? (c->moved[c->root_bone] & 1u << ANIM_PACK_T) != 0
+                   : c->track_of_bone[c->root_bone] >= 0;
+}
+
+void anim_root_pin(const anim_clip_res *c, float *x, float *y, float *z) {
+    if (root_moves(c)) {
+        core_vec3 d = core_v3_sub(core_v3(*x, *y, *z), anim_root_translation(c, 0));
+        core_vec3 removed = mul3(c->root_remove, d);
+        *x -= removed.x;
+        *y -= removed.y;
+        *z -= removed.z;
     }
-    core_vec3 start = c->track[track].key[0].translation;
-    float *v = pose + c->root_bone;
-    core_vec3 d =
-        core_v3_sub(core_v3(v[ANIM_TX * stride], v[ANIM_TY * stride], v[ANIM_TZ * stride]), start);
-    core_vec3 removed = mul3(c->root_remove, d);
-    v[ANIM_TX * stride] -= removed.x;
-    v[ANIM_TY * stride] -= removed.y;
-    v[ANIM_TZ * stride] -= removed.z;
 }
 
 core_vec3 anim_root_between(const anim_clip_res *c, float t0, float t1) {

@@ -2,6 +2,9 @@
 
 #include "core/nearest.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 CORE_COLUMNS_DEFINE(anim_players, ANIM_PLAYER_COLUMNS)
 CORE_COLUMNS_DEFINE(anim_instances, ANIM_INSTANCE_COLUMNS)
 CORE_COLUMNS_DEFINE(anim_chunks, ANIM_CHUNK_COLUMNS)
@@ -46,18 +49,15 @@ anim_world *anim_world_create(const anim_world_desc *desc) {
     return w;
 }
 
-static void free_skeleton(anim_skeleton_res *s) {
+static void free_skeleton(void *item) {
+    anim_skeleton_res *s = item;
     core_free(s->free_place);
     core_free(s);
 }
 
-static void free_items(anim_resources *set, bool skeletons) {
+static void free_items(anim_resources *set, void (*release)(void *)) {
     for (uint32_t row = 0; row < core_columns_count(&set->set); row++) {
-        if (skeletons) {
-            free_skeleton(set->item[row]);
-        } else {
-            core_free(set->item[row]);
-        }
+        release(set->item[row]);
     }
     core_columns_release(&set->set);
 }
@@ -66,9 +66,9 @@ void anim_world_destroy(anim_world *w) {
     if (!w) {
         return;
     }
-    free_items(&w->skeletons, true);
-    free_items(&w->clips, false);
-    free_items(&w->machines, false);
+    free_items(&w->skeletons, free_skeleton);
+    free_items(&w->clips, anim_clip_free);
+    free_items(&w->machines, core_free);
     core_columns_release(&w->instances.set);
     core_columns_release(&w->players.set);
     core_columns_release(&w->chunks.set);
@@ -82,9 +82,30 @@ void anim_world_destroy(anim_world *w) {
     core_free(w);
 }
 
+// w NULL: only whether the setting is good (the room is made later).
 bool anim_world_set(anim_world *w, const char *name, const char *value) {
-    (void)w;
-    return core_fail("anim.%s=%s: the animation room has no settings", name, value);
+    static const char *const names[] = {"pack", "batch"};
+    anim_world unused, *to = w ? w : &unused;
+    char *end = NULL;
+    if (strcmp(name, "pack") == 0) {
+        float bound = strtof(value, &end);
+        if (end == value || *end || !(bound >= 0 && bound <= 1)) {
+            return core_fail("anim.pack=%s: expected metres from 0 (keep keys) to 1", value);
+        }
+        to->pack_bound = bound;
+        return true;
+    }
+    if (strcmp(name, "batch") == 0) {
+        bool off = strcmp(value, "off") == 0;
+        if (!off && strcmp(value, "on") != 0) {
+            return core_fail("anim.batch=%s: expected on or off", value);
+        }
+        to->unbatched = off;
+        return true;
+    }
+    const char *near = core_nearest(name, names, CORE_COUNT_OF(names));
+    return core_fail("anim.%s: no such setting%s%s%s", name, near ? "; did you mean anim." : "",
+                     near ? near : "", near ? "?" : "");
 }
 
 int anim_world_state(const anim_world *w, const core_columns **out, int capacity) {
