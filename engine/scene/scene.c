@@ -73,6 +73,7 @@ void scene_destroy(scene *s) {
     core_columns_release(&s->name.set);
     core_columns_release(&s->clock.set);
     core_free(s->setting);
+    core_free(s->tag);
     core_free(s->order);
     core_free(s->depth_start);
     core_free(s);

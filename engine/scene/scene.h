@@ -113,6 +113,7 @@ typedef struct scene_spawn_desc {
     gfx_instance_desc *draw; // NULL: not drawn
     core_vec3 draw_scale;    // size of the unit mesh; zero: 1
     const char *name;        // NULL: none; need not be unique
+    uint64_t tags;           // bits of scene_tag
     // A model made by scene_model_load: its first mesh on the entity, further ones on children.
     // With a skeleton the entity gets an animation instance that plays machine, clip or the bind
     // pose. Excludes `draw`.
@@ -153,6 +154,34 @@ bool scene_set_position(scene *s, scene_entity e,
                         core_vec3 p); // teleports the body, resets interpolation
 bool scene_set_rotation(scene *s, scene_entity e, core_quat q);
 bool scene_set_scale(scene *s, scene_entity e, core_vec3 v);
+
+// ---- tags and queries ----
+#define SCENE_MAX_TAGS 64
+// Number of a tag by name, 0..63; a new name takes the next. -1 + core_fail when all are taken or
+// the name is empty or too long.
+int scene_tag(scene *s, const char *name);
+bool scene_set_tag(scene *s, scene_entity e, const char *name, bool on);
+bool scene_has_tag(const scene *s, scene_entity e, const char *name); // false when stale
+
+enum {
+    SCENE_HAS_BODY = 1u,
+    SCENE_HAS_MESH = 2u,
+    SCENE_HAS_ANIM = 4u,
+    SCENE_HAS_AGENT = 8u,
+    SCENE_HAS_SOUND = 16u
+};
+typedef struct scene_query {
+    uint64_t tags, without; // bits of scene_tag: all of these, none of those
+    uint32_t has;           // SCENE_HAS_*: all of these
+    core_vec3 min, max;     // origins in this box (m); default everywhere
+    core_vec3 center;       // and at most `radius` from here
+    float radius;           // m; default infinite
+    uint32_t cookie;
+} scene_query;
+scene_query scene_query_default(void);
+// Entities that match, in the order of rows: out[capacity] gets the first. Returns how many match.
+uint32_t scene_find_all(const scene *s, const scene_query *query, scene_entity *out,
+                        uint32_t capacity);
 
 // Writes interpolated transforms into gfx: alpha 0 = previous step, 1 = current. Changes no
 // simulation state. No-op without gfx.

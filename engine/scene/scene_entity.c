@@ -130,6 +130,7 @@ scene_entity scene_spawn(scene *s, const scene_spawn_desc *d) {
     e->sx[row] = scale.x;
     e->sy[row] = scale.y;
     e->sz[row] = scale.z;
+    e->tags[row] = d->tags;
     scene_link(s, row, d->parent);
     scene_world_of(s, row);
     scene_interpolation_reset(s, row);

@@ -24,6 +24,7 @@
     X(core_handle, prev_sibling, CORE_COLUMN_STATE)                                                \
     X(uint32_t, depth, CORE_COLUMN_STATE)                                                          \
     X(core_handle, body, CORE_COLUMN_STATE)                                                        \
+    X(uint64_t, tags, CORE_COLUMN_STATE)                                                           \
     X(core_handle, name, CORE_COLUMN_STATE)                                                        \
     X(core_handle, anim, CORE_COLUMN_STATE)   /* owned */                                          \
     X(core_handle, agent, CORE_COLUMN_STATE)  /* owned */                                          \
@@ -71,6 +72,7 @@ typedef struct scene_kept_setting { // given before its room was made
     char room[16], name[48], value[64];
 } scene_kept_setting;
 #define SCENE_MAX_SETTINGS 128
+#define SCENE_TAG_NAME     32
 #define SCENE_LAYER_NAME   32 // bytes with the terminating zero
 
 typedef struct scene_models scene_models;
@@ -101,6 +103,8 @@ struct scene {
     uint32_t setting_count;
     char layer[32][SCENE_LAYER_NAME]; // names of collision layers
     uint32_t layer_count;
+    char (*tag)[SCENE_TAG_NAME]; // [SCENE_MAX_TAGS] names, made with the first one
+    uint32_t tag_count;
     uint32_t *order; // rows with a parent, parents before children; rebuilt when links change
     uint32_t order_count, order_capacity;
     uint32_t *depth_start; // [depth_capacity] counting sort's scratch

@@ -1,11 +1,13 @@
 // corsac.scene: entities.
 #include "script/bind_anim.h"
 #include "script/bind_body.h"
+#include "script/bind_query.h"
 #include "script/internal.h"
 
 #include <string.h>
 
 typedef struct spawn_options {
+    int tags;
     core_vec3 position, scale;
     core_quat rotation;
     core_handle parent;
@@ -32,6 +34,7 @@ static int spawn(script *s, lua_State *L, void *args) {
     desc.scale = o->scale;
     desc.parent = o->parent;
     desc.name = o->name;
+    desc.tags = bind_tags(s, L, o->tags, "corsac.scene.spawn");
     if (o->has_body) {
         desc.body = &body;
         desc.shapes = shapes;
@@ -168,6 +171,8 @@ static int is_destroyed(script *s, lua_State *L, void *args) {
     BIND_ARGS({"x", BIND_NUMBER, .unit = NULL}, {"y", BIND_NUMBER, .unit = NULL},                  \
               {"z", BIND_NUMBER, .unit = NULL}, {"w", BIND_NUMBER, .unit = NULL})
 
+#define TAG_ARGS BIND_ARGS({"name", BIND_STRING, BIND_AT(bind_tag_args, name), "of the tag"})
+
 static const bind_fn entity_methods[] = {
     {"getPosition", "Where it is in the world.", NULL, XYZ("m"), .phases = BIND_RUNNING,
      .mod = true, .cost = 4, .numbers = get_position},
@@ -203,6 +208,12 @@ static const bind_fn entity_methods[] = {
      BIND_ARGS({"parent", BIND_OBJECT, BIND_AT(parent_args, parent), "new parent", .optional = true,
                 .def_text = "nil", .type = &bind_entity_type}),
      NULL, sizeof(parent_args), BIND_SIM, .mod = true, .cost = 20, .run = set_parent},
+    {"addTag", "Gives it a tag; a new name makes one (at most 64).", TAG_ARGS, NULL,
+     sizeof(bind_tag_args), BIND_SIM, .mod = true, .cost = 10, .run = bind_add_tag},
+    {"removeTag", "Takes a tag from it.", TAG_ARGS, NULL, sizeof(bind_tag_args), BIND_SIM,
+     .mod = true, .cost = 10, .run = bind_remove_tag},
+    {"hasTag", "Whether it has a tag.", TAG_ARGS, BIND_RETURNS({"has", "boolean", NULL}),
+     sizeof(bind_tag_args), BIND_RUNNING, .mod = true, .cost = 10, .run = bind_has_tag},
     {"isDestroyed", "Whether it was destroyed; every other method then raises an error.", NULL,
      BIND_RETURNS({"destroyed", "boolean", NULL}), sizeof(core_handle), BIND_ANY, .mod = true,
      .cost = 2, .run = is_destroyed},
@@ -236,6 +247,8 @@ static const bind_arg spawn_fields[] = {
     {"clip", BIND_OBJECT, BIND_AT(spawn_options, clip), "clip the model plays, without a machine",
      .optional = true, .def_text = "nil", .type = &bind_clip_type},
     {"name", BIND_STRING, BIND_AT(spawn_options, name), "for corsac.scene.find", .optional = true},
+    {"tags", BIND_TABLE, BIND_AT(spawn_options, tags), "names, for corsac.scene.findAll",
+     .optional = true, .def_text = "none"},
     {0}};
 
 static const bind_fn functions[] = {
@@ -254,6 +267,7 @@ static const bind_fn functions[] = {
 
 static const bind_module modules[] = {
     {"corsac.scene", "Entities: places in the world that carry bodies and meshes.", functions},
+    {"corsac.scene", "", bind_query_functions},
     {0}};
 static const bind_type *const types[] = {&bind_entity_type, NULL};
 

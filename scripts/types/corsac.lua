@@ -75,6 +75,19 @@ function Entity:getParent() end
 ---@param parent? corsac.Entity new parent
 function Entity:setParent(parent) end
 
+---Gives it a tag; a new name makes one (at most 64).
+---@param name string of the tag
+function Entity:addTag(name) end
+
+---Takes a tag from it.
+---@param name string of the tag
+function Entity:removeTag(name) end
+
+---Whether it has a tag.
+---@param name string of the tag
+---@return boolean has
+function Entity:hasTag(name) end
+
 ---Whether it was destroyed; every other method then raises an error.
 ---@return boolean destroyed
 function Entity:isDestroyed() end
@@ -944,6 +957,7 @@ corsac.scene = {}
 ---@field machine? corsac.Machine state machine that moves the model
 ---@field clip? corsac.Clip clip the model plays, without a machine
 ---@field name? string for corsac.scene.find
+---@field tags? table names, for corsac.scene.findAll
 
 ---Makes an entity: a place in the world with a body, a mesh, or both.
 ---@param options corsac.scene.spawn.options the entity
@@ -958,6 +972,20 @@ function corsac.scene.find(name) end
 ---How many entities there are.
 ---@return integer count
 function corsac.scene.getCount() end
+
+---@class corsac.scene.findAll.options
+---@field tags? table names: has all of these
+---@field without? table names: has none of these
+---@field has? table has all of these: "body", "mesh", "animator", "agent", "sound"
+---@field min? number[] corner of a box around its position, m
+---@field max? number[] the other corner, m
+---@field center? number[] of a ball around its position, m
+---@field radius? number of that ball, m
+
+---Entities by tags, components and place, in an order that every run repeats.
+---@param options corsac.scene.findAll.options what they must have
+---@return corsac.Entity[] entities
+function corsac.scene.findAll(options) end
 
 ---Rigid bodies: metres, kilograms, seconds, radians.
 corsac.phys = {}
