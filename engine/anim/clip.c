@@ -295,13 +295,39 @@ const core_key *anim_clip_keys(const anim_world *w, anim_clip h, uint32_t bone, 
     return t->key;
 }
 
+// sin(u angle) / sin(angle) as a series in cos(angle) - 1: eight terms are exact to float up to
+// half a radian between keys (Eberly, "A fast and accurate algorithm for computing SLERP", 2011).
+static float slerp_weight(float u, float minus) {
+    static const float a[] = {1.0f / 3,  1.0f / 10, 1.0f / 21,  1.0f / 36,
+                              1.0f / 55, 1.0f / 78, 1.0f / 105, 1.0f / 136};
+    static const float b[] = {1.0f / 3,  2.0f / 5,  3.0f / 7,  4.0f / 9,
+                              5.0f / 11, 6.0f / 13, 7.0f / 15, 8.0f / 17};
+    float square = u * u, sum = 1;
+    for (int i = 7; i >= 0; i--) {
+        sum = 1 + (a[i] * square - b[i]) * minus * sum;
+    }
+    return u * sum;
+}
+
+// Unit quaternions in, so near that nothing needs normalising; others by the full formula.
+static core_quat slerp_keys(core_quat p, core_quat q, float u) {
+    float dot = p.x * q.x + p.y * q.y + p.z * q.z + p.w * q.w, side = dot < 0 ? -1.0f : 1.0f;
+    float minus = dot * side - 1;
+    if (!(minus > -0.125f && minus < 1e-5f)) {
+        return core_quat_slerp(p, q, u);
+    }
+    float wp = slerp_weight(1 - u, minus), wq = slerp_weight(u, minus) * side;
+    return (core_quat){p.x * wp + q.x * wq, p.y * wp + q.y * wq, p.z * wp + q.z * wq,
+                       p.w * wp + q.w * wq};
+}
+
 core_key anim_key_interpolate(const core_key *a, const core_key *b, float alpha) {
     core_key out;
     float left = 1 - alpha; // both ends are exact: a * 1 + b * 0
     out.time = a->time * left + b->time * alpha;
     out.translation = core_v3_mad(core_v3_scale(a->translation, left), b->translation, alpha);
     out.scale = core_v3_mad(core_v3_scale(a->scale, left), b->scale, alpha);
-    out.rotation = core_quat_slerp(a->rotation, b->rotation, alpha);
+    out.rotation = slerp_keys(a->rotation, b->rotation, alpha);
     return out;
 }
 

@@ -96,14 +96,19 @@ static void local_matrix(const float *pose, uint32_t n, uint32_t b, float m[12])
     m[11] = v[ANIM_TZ * n];
 }
 
-static void mul34(const float *a, const float *b, float *out) {
-    for (int r = 0; r < 3; r++) {
-        const float *row = a + 4 * r;
-        for (int c = 0; c < 4; c++) {
-            out[4 * r + c] = row[0] * b[c] + row[1] * b[4 + c] + row[2] * b[8 + c];
-        }
-        out[4 * r + 3] += row[3];
-    }
+static inline void mul34_row(const float *restrict row, const float *restrict b,
+                             float *restrict out) {
+    float x = row[0], y = row[1], z = row[2], w = row[3];
+    out[0] = x * b[0] + y * b[4] + z * b[8];
+    out[1] = x * b[1] + y * b[5] + z * b[9];
+    out[2] = x * b[2] + y * b[6] + z * b[10];
+    out[3] = (x * b[3] + y * b[7] + z * b[11]) + w;
+}
+
+static inline void mul34(const float *restrict a, const float *restrict b, float *restrict out) {
+    mul34_row(a, b, out);
+    mul34_row(a + 4, b, out + 4);
+    mul34_row(a + 8, b, out + 8);
 }
 
 void anim_columns_to_model(const anim_skeleton_res *s, const float *pose, float *model) {
