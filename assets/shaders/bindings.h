@@ -5,7 +5,8 @@
 
 #ifdef __STDC_VERSION__
 #include <stdint.h>
-#define GFX_VEC4(name)  float name[4]
+typedef float gfx_glsl_vec4[4];
+#define GFX_VEC4(name)  gfx_glsl_vec4 name
 #define GFX_UVEC4(name) uint32_t name[4]
 #define GFX_MAT4(name)  float name[16]
 #else
@@ -38,8 +39,12 @@
 #define GFX_TEX_SHADOW             6
 #define GFX_TEX_HDR                8
 #define GFX_TEX_IMAGE              9
+#define GFX_TEX_ENVIRONMENT        10
+#define GFX_TEX_PANORAMA           11
 
-#define GFX_DFG_SIZE 64 // texels a side
+#define GFX_DFG_SIZE           64 // texels a side
+#define GFX_ENVIRONMENT_SIZE   64 // texels a side of a face of the first level
+#define GFX_ENVIRONMENT_LEVELS 6  // roughness 0, 0.2, .. 1
 
 // Vertex attributes.
 #define GFX_ATTR_POSITION 0
@@ -51,7 +56,10 @@
 #define GFX_ATTR_WEIGHT   6
 
 // Plain uniforms (glUniform locations).
-#define GFX_U_INSTANCE 0
+#define GFX_U_INSTANCE  0
+#define GFX_U_FACE      1
+#define GFX_U_SIZE      2
+#define GFX_U_ROUGHNESS 3
 
 #define GFX_LIGHT_POINT       0
 #define GFX_LIGHT_SPOT        1
@@ -71,6 +79,13 @@ struct gfx_view_block {
     GFX_VEC4(depth_range);    // orthographic: near, far; z = virtual far (m)
     GFX_UVEC4(cluster_grid);  // cells x, y, z; 1 when slices are linear
     GFX_UVEC4(light_count);   // directional, point and spot, tone map
+    GFX_VEC4(lens);           // half extents of the view at depth 1
+    GFX_VEC4(sky_zenith);     // rgb radiance; w: factor of the environment
+    GFX_VEC4(sky_horizon);
+    GFX_VEC4(sky_ground);
+    GFX_VEC4(sky_glow); // rgb radiance round the sun
+    GFX_VEC4(sky_sun);  // unit direction to it; exponent of the glow
+    GFX_VEC4(harmonics[9]);
 };
 
 struct gfx_light_block {

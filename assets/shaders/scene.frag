@@ -3,6 +3,7 @@
 #include "material.glsl"
 #include "brdf.glsl"
 #include "lights.glsl"
+#include "ambient.glsl"
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -56,16 +57,6 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
     s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
     setMaterial(s, base.rgb, metallic, roughness);
     return s;
-}
-
-// Hemisphere ambient: sky above, ground below; the specular lobe sees the half sphere round the
-// mirrored view, the sharper the smoother.
-vec3 ambientLight(Surface s) {
-    vec3 sky = u_view.ambient_sky.rgb, ground = u_view.ambient_ground.rgb;
-    vec3 irradiance = mix(ground, sky, 0.5 + 0.5 * s.normal.y);
-    float up = reflect(-s.view, s.normal).y;
-    vec3 mirror = mix(ground, sky, clamp(0.5 + mix(4.0, 0.5, s.alpha) * up, 0.0, 1.0));
-    return s.diffuse * irradiance + s.specular * mirror;
 }
 
 void main() {

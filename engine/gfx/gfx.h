@@ -66,6 +66,21 @@ bool gfx_light_set_color(gfx_world *world, gfx_light light, float r, float g, fl
                          float intensity);
 // Ambient light: linear radiance of the upper hemisphere; the lower one gives 0.4 of it.
 void gfx_world_set_ambient(gfx_world *world, float r, float g, float b);
+// Light from everywhere that is seen behind things too, in place of ambient light and background:
+// a procedural sky, or a picture. Irradiance goes by spherical harmonics, reflections by a
+// prefiltered cube map; both are made when the next frame is drawn, at some cost.
+typedef struct gfx_environment {
+    const char *panorama; // virtual path of an equirectangular picture (.hdr, .png, .jpg), copied.
+                          // NULL: the procedural sky
+    float intensity;      // factor, > 0, default 1
+    float zenith[3], horizon[3], ground[3]; // sky: linear radiance
+    float glow[3];                          // added round the sun
+    float glow_exponent;                    // the larger the narrower, 1..4096
+    core_vec3 sun;                          // towards it; need not be unit
+    uint32_t cookie;
+} gfx_environment;
+gfx_environment gfx_environment_default(void);                                        // a clear day
+bool gfx_world_set_environment(gfx_world *world, const gfx_environment *environment); // NULL: none
 // Linear radiance where nothing is drawn.
 void gfx_world_set_background(gfx_world *world, float r, float g, float b);
 

@@ -141,6 +141,7 @@ void gfx_device_destroy(gfx_device *device) {
         gfx_stream_release(streams[i]);
     }
     gfx_shadows_release(&d->shadows);
+    gfx_environment_release(&d->environment);
     gfx_clusters_release(&d->clusters);
     gfx_cluster_lights_release(&d->cluster_lights);
     gfx_materials_release(&d->materials);

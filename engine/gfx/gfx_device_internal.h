@@ -132,6 +132,24 @@ float gfx_shadow_first(const gfx_device *device, uint32_t row);
 float gfx_shadow_view_count(const gfx_device *device, uint32_t type);
 void gfx_shadows_release(gfx_shadows *shadows);
 
+// ---- environment (gfx_environment.c) ----
+
+typedef struct gfx_environment_maps {
+    GLuint source, filtered,
+        panorama; // cube with all levels; cube with a roughness a level; picture
+    uint64_t key; // of the environment they were made from
+    float harmonics[9][4];
+} gfx_environment_maps;
+// The environment's part of the view block; harmonics are those of the maps.
+void gfx_environment_write(const gfx_device *device, const gfx_world *world,
+                           struct gfx_view_block *out);
+// Makes the maps when the world's environment changed.
+bool gfx_environment_update(gfx_device *device, const gfx_world *world);
+bool gfx_environment_draw(gfx_device *device, const gfx_world *world); // behind everything
+// rgba[6*size*size*4]: faces of a cube, to nine coefficients of irradiance over pi.
+void gfx_environment_project(const float *rgba, uint32_t size, float out[9][4]);
+void gfx_environment_release(gfx_environment_maps *maps);
+
 // ---- lights (gfx_light_upload.c) ----
 
 extern const struct gfx_light_block gfx_default_sun;
@@ -192,6 +210,7 @@ struct gfx_device {
     gfx_clusters clusters;
     gfx_cluster_lights cluster_lights;
     gfx_shadows shadows;
+    gfx_environment_maps environment;
     gfx_textures textures;
     gfx_material_cache materials;
     GLsync fence[GFX_FRAMES];

@@ -41,6 +41,8 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     };
     memcpy(b->view_proj, v->view_projection.m, sizeof b->view_proj);
     memcpy(b->view, v->view.m, sizeof b->view);
+    b->lens[0] = v->tan_x, b->lens[1] = v->tan_y;
+    gfx_environment_write(d, world, b);
     gfx_stream_bind(&d->view_block, GL_UNIFORM_BUFFER, GFX_UBO_VIEW, sizeof *b, d->frame);
 }
 
@@ -48,6 +50,7 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
 
 static uint32_t scene_features(const gfx_device *d, const gfx_world *world, bool clustered) {
     uint32_t features = clustered ? GFX_FEATURE_CLUSTERED : 0;
+    features |= world->environment_set ? GFX_FEATURE_IBL : 0;
     if (d->shadows.count) {
         features |= GFX_FEATURE_SHADOWS;
         features |= world->settings.shadows == GFX_SHADOWS_SOFT ? GFX_FEATURE_SOFT_SHADOWS : 0;
@@ -73,6 +76,7 @@ static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *lis
     const float *c = world->background;
     const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
     glBindTextureUnit(GFX_TEX_DFG, d->dfg_texture);
+    glBindTextureUnit(GFX_TEX_ENVIRONMENT, d->environment.filtered);
     glBindFramebuffer(GL_FRAMEBUFFER, d->hdr_target);
     glViewport(0, 0, (GLsizei)d->width, (GLsizei)d->height);
     glDisable(GL_BLEND);
@@ -95,6 +99,7 @@ static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *lis
         }
     }
     bool ok = gfx_draws_submit(d, world, list, "scene.frag", features);
+    ok = ok && (!world->environment_set || gfx_environment_draw(d, world));
     if (ok && list->batches > list->opaque) {
         ok = pass_blended(d, world, list, features);
     }
@@ -168,7 +173,7 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_MATERIALS, d->materials.buffer);
-    ok = gfx_shadows_draw(d, world);
+    ok = gfx_shadows_draw(d, world) && gfx_environment_update(d, world);
     upload_view(d, world, &view, &lights);
     ok = ok && pass_scene(d, world, &list, scene_features(d, world, lights.clustered)) &&
          pass_tonemap(d) && gfx_quads_draw(d, world);

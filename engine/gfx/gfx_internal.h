@@ -131,11 +131,19 @@ struct gfx_world {
     gfx_camera camera;
     bool camera_set;
     float ambient[3], background[3];
-    bool ambient_set;
+    bool ambient_set, environment_set;
+    gfx_environment environment; // panorama: points to panorama_path
+    char panorama_path[CORE_NAME_MAX];
     gfx_growing commands, text;
     size_t heap_bytes; // of meshes and palettes
     gfx_frame_stats stats;
 };
+
+// A world that was given no light of any kind is lit by a sun of our own.
+static inline bool gfx_world_has_default_sun(const gfx_world *world) {
+    return core_columns_count(&world->lights.set) == 0 && !world->ambient_set &&
+           !world->environment_set;
+}
 
 // ---- names (gfx_settings.c) ----
 int gfx_find_name(const char *name, const char *const *names, int count); // -1: none

@@ -37,7 +37,7 @@ static void write_lights(gfx_device *d, const gfx_world *world, gfx_light_upload
     uint32_t n = core_columns_count(&l->set), at = 0;
     struct gfx_light_block *block =
         gfx_stream_begin(&d->light_block, (n + 1) * sizeof *block, d->frame);
-    if (n == 0 && !world->ambient_set) {
+    if (gfx_world_has_default_sun(world)) {
         block[at] = gfx_default_sun;
         block[at].direction[3] = gfx_shadow_view_count(d, GFX_DIRECTIONAL);
         block[at++].spot[3] = gfx_shadow_first(d, 0);

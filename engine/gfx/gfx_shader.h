@@ -16,6 +16,8 @@
     X(TEXTURES, "USE_TEXTURES")                                                                    \
     X(ALPHA_MASK, "USE_ALPHA_MASK")                                                                \
     X(BLEND, "USE_BLEND")                                                                          \
+    X(IBL, "USE_IBL")                                                                              \
+    X(PANORAMA, "USE_PANORAMA")                                                                    \
     X(DEPTH_ONLY, "DEPTH_ONLY")                                                                    \
     X(TEXT, "USE_TEXT")                                                                            \
     X(IMAGE, "USE_IMAGE")

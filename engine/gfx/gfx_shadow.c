@@ -188,7 +188,7 @@ void gfx_shadows_plan(gfx_device *d, const gfx_world *world, const gfx_view *vie
     for (uint32_t type = 0; type < 3; ++type) {
         s->views_of_type[type] = views_of(world, type);
     }
-    bool sun = lights == 0 && !world->ambient_set; // the default one
+    bool sun = gfx_world_has_default_sun(world);
     if (!world->settings.shadows) {
         return;
     }

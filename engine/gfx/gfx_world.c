@@ -256,6 +256,45 @@ void gfx_world_set_background(gfx_world *world, float r, float g, float b) {
     world->background[0] = r, world->background[1] = g, world->background[2] = b;
 }
 
+gfx_environment gfx_environment_default(void) {
+    return (gfx_environment){.intensity = 1.0f,
+                             .zenith = {0.16f, 0.32f, 0.72f},
+                             .horizon = {0.75f, 0.86f, 1.0f},
+                             .ground = {0.22f, 0.2f, 0.18f},
+                             .glow = {2.2f, 1.8f, 1.2f},
+                             .glow_exponent = 64.0f,
+                             .sun = {0.4f, 0.8f, 0.4f},
+                             .cookie = GFX_COOKIE};
+}
+
+bool gfx_world_set_environment(gfx_world *world, const gfx_environment *e) {
+    if (!e) {
+        world->environment_set = false;
+        return true;
+    }
+    if (e->cookie != GFX_COOKIE) {
+        return core_fail("gfx_world_set_environment: start from gfx_environment_default()");
+    }
+    if (!(e->intensity > 0.0f) || !isfinite(e->intensity) || !finite3(e->sun) ||
+        !(e->glow_exponent >= 1.0f && e->glow_exponent <= 4096.0f)) {
+        return core_fail("gfx_world_set_environment: intensity %g, glow_exponent %g: expected > 0 "
+                         "and 1..4096, and a finite sun",
+                         (double)e->intensity, (double)e->glow_exponent);
+    }
+    if (e->panorama && strlen(e->panorama) >= CORE_NAME_MAX) {
+        return core_fail("gfx_world_set_environment: the path of the panorama is too long");
+    }
+    world->environment = *e;
+    world->environment.sun = core_v3_normalize(e->sun, core_v3(0.0f, 1.0f, 0.0f));
+    world->panorama_path[0] = '\0';
+    if (e->panorama) {
+        strcpy(world->panorama_path, e->panorama);
+    }
+    world->environment.panorama = NULL;
+    world->environment_set = true;
+    return true;
+}
+
 // ---- materials ----
 
 gfx_material_desc gfx_material_desc_default(void) {
