@@ -63,6 +63,8 @@ class Hash(SceneCase):
         other = ROOT / "build/clang-release/corsac"
         if not other.exists() or str(other) == CORSAC:
             self.skipTest("build/clang-release/corsac is not built (make CC=clang)")
+        if other.stat().st_mtime < Path(CORSAC).stat().st_mtime:
+            self.skipTest("build/clang-release/corsac is older than the program (make CC=clang)")
         scene = self.write("scene.lua", BALLS)
         out = subprocess.run([other, "run", scene, "--headless", "--steps", "120", "--set", "n=60", "--hash",
                               "--quiet"], cwd=ROOT, capture_output=True, text=True, timeout=120).stdout
