@@ -112,7 +112,10 @@ static uint32_t make_keys(gfx_device *d, const gfx_world *world, const gfx_view 
 
 // Continues the list's last batch when the state is the same, else starts one.
 static gfx_batch *batch_for(gfx_device *d, gfx_draw_list *list, const gfx_batch *state) {
-    gfx_batch *batch = (gfx_batch *)d->batches.data + d->batches.count - 1;
+    gfx_batch *batch = d->batches.data; // null until the first batch of all
+    if (list->batches) {
+        batch += d->batches.count - 1;
+    }
     if (list->batches == 0 || !same_state(batch, state)) {
         batch = gfx_grow(&d->batches, sizeof *batch, 1);
         *batch = *state;
@@ -222,10 +225,11 @@ static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end
     bool instanced = world->settings.instancing && d->draw_parameters;
     features |= instanced ? GFX_FEATURE_INSTANCING : 0;
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, d->draw_block.name);
-    const gfx_batch *batch = (const gfx_batch *)d->batches.data + first;
+    const gfx_batch *batches = d->batches.data;
     GLuint used = 0;
     bool two_sided = false;
-    for (uint32_t i = first; i < end; ++i, ++batch) {
+    for (uint32_t i = first; i < end; ++i) {
+        const gfx_batch *batch = &batches[i];
         uint32_t own = batch->features;
         if (features & GFX_FEATURE_DEPTH_ONLY && !(own & GFX_FEATURE_ALPHA_MASK)) {
             own &= GFX_FEATURE_SKINNING; // depth needs no more of an opaque material
