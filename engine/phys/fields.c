@@ -29,6 +29,23 @@ static bool check_desc(const phys_field_desc *d) {
     return !d->bounded || phys_region_check("field", d->shape, d->half, d->radius, d->position);
 }
 
+// Member by member into a zeroed row: the padding of a struct that is copied whole is what a
+// compiler left there, and rows are hashed.
+static void keep(phys_field_desc *out, const phys_field_desc *d) {
+    out->type = d->type;
+    out->acceleration = d->acceleration;
+    out->center = d->center;
+    out->strength = d->strength;
+    out->core = d->core;
+    out->bounded = d->bounded;
+    out->shape = d->shape;
+    out->position = d->position;
+    out->half = d->half;
+    out->rotation = core_quat_normalize(d->rotation);
+    out->radius = d->radius;
+    out->layers = d->layers ? d->layers : UINT32_MAX;
+}
+
 phys_field phys_field_create(phys_world *w, const phys_field_desc *d) {
     if (!check_desc(d)) {
         return CORE_NULL_HANDLE;
@@ -36,9 +53,7 @@ phys_field phys_field_create(phys_world *w, const phys_field_desc *d) {
     core_handle h = core_columns_add(&w->fields.set);
     if (!core_handle_is_null(h)) {
         phys_field_desc *out = &w->fields.desc[core_columns_count(&w->fields.set) - 1];
-        *out = *d;
-        out->rotation = core_quat_normalize(d->rotation);
-        out->layers = d->layers ? d->layers : UINT32_MAX;
+        keep(out, d);
         w->measured = false;
     }
     return h;
