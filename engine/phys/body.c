@@ -138,6 +138,7 @@ static void add_shape(phys_world *w, uint32_t body_slot, uint32_t body_row,
     }
     s->friction[i] = d->friction;
     s->restitution[i] = d->restitution;
+    s->rolling[i] = d->rolling;
 }
 
 static void leave_hulls(phys_world *w, const uint32_t *hull, uint32_t count) {
@@ -199,6 +200,8 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     b->layer[i] = (uint8_t)d->layer;
     b->user[i] = d->user;
     b->flags[i] |= d->contact_events ? PHYS_BODY_EVENTS : 0u;
+    b->rest_turn[i] = q;
+    b->rest_place[i] = phys_get3(b->cx, b->cy, b->cz, i);
     b->seen[i] = phys_get3(b->cx, b->cy, b->cz, i);
     for (uint32_t k = count; k-- > 0;) {
         add_shape(w, h.index, i, &shapes[k], hull[k]);
@@ -292,6 +295,7 @@ bool phys_body_set_layer(phys_world *w, phys_body body, uint32_t layer) {
     }
     w->bodies.layer[i] = (uint8_t)layer;
     w->pairs_stale = true;
+    phys_wake_row(w, i);
     return true;
 }
 
@@ -345,6 +349,7 @@ bool phys_body_set_position(phys_world *w, phys_body body, core_vec3 p) {
     phys_body_sync_center(&w->bodies, i);
     w->bodies.seen[i] = phys_get3(w->bodies.cx, w->bodies.cy, w->bodies.cz, i);
     w->measured = false;
+    phys_wake_row(w, i);
     return true;
 }
 
@@ -364,6 +369,7 @@ bool phys_body_set_rotation(phys_world *w, phys_body body, core_quat q) {
     w->bodies.qz[i] = q.z;
     w->bodies.qw[i] = q.w;
     phys_body_sync_center(&w->bodies, i);
+    phys_wake_row(w, i);
     return true;
 }
 
@@ -379,6 +385,7 @@ bool phys_body_set_velocity(phys_world *w, phys_body body, core_vec3 v) {
     }
     phys_put3(w->bodies.vx, w->bodies.vy, w->bodies.vz, i, v);
     w->measured = false;
+    phys_wake_row(w, i);
     return true;
 }
 
@@ -390,6 +397,7 @@ bool phys_body_set_angular_velocity(phys_world *w, phys_body body, core_vec3 v) 
     }
     phys_put3(w->bodies.wx, w->bodies.wy, w->bodies.wz, i, v);
     w->measured = false;
+    phys_wake_row(w, i);
     return true;
 }
 
@@ -399,6 +407,7 @@ bool phys_body_apply_force(phys_world *w, phys_body body, core_vec3 f) {
         return false;
     }
     w->bodies.force[i] = core_v3_add(w->bodies.force[i], f);
+    phys_wake_row(w, i);
     return true;
 }
 
@@ -417,5 +426,6 @@ bool phys_body_apply_impulse(phys_world *w, phys_body body, core_vec3 j, core_ve
     phys_put3(b->vx, b->vy, b->vz, i, core_v3_mad(v, j, b->im[i]));
     phys_put3(b->wx, b->wy, b->wz, i, core_v3_add(o, dw));
     w->measured = false;
+    phys_wake_row(w, i);
     return true;
 }

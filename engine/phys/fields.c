@@ -55,6 +55,7 @@ phys_field phys_field_create(phys_world *w, const phys_field_desc *d) {
         phys_field_desc *out = &w->fields.desc[core_columns_count(&w->fields.set) - 1];
         keep(out, d);
         w->measured = false;
+        phys_wake_all(w);
     }
     return h;
 }
@@ -65,6 +66,7 @@ bool phys_field_destroy(phys_world *w, phys_field h) {
                          h.generation);
     }
     w->measured = false;
+    phys_wake_all(w);
     return core_columns_remove(&w->fields.set, h, NULL, NULL);
 }
 

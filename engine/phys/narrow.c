@@ -36,7 +36,7 @@ static void narrow_balls(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk
     const float *dt = ((void **)ctx)[1];
     CORE_SIMD_SELECT(phys_narrow_balls)(w, begin, end, *dt);
     for (uint32_t i = begin; i < end; i++) {
-        if (w->balls.fixed[i]) {
+        if (w->balls.fixed[i] && phys_mobile(&w->bodies, w->balls.a[i])) {
             refresh_fixed_ball(w, i, *dt);
         }
     }
@@ -140,6 +140,9 @@ static void refresh_contact(phys_world *w, uint32_t i, float dt) {
     uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
     uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
     uint32_t ra = c->a[i], rb = c->b[i];
+    if (!phys_moves(b, ra) && !phys_moves(b, rb)) {
+        return;
+    }
     core_vec3 dv =
         core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
     float reach = PHYS_MARGIN + core_v3_length(dv) * dt;

@@ -115,6 +115,7 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
         w->balls.b[i] = s->row[second];
         w->balls.sa[i] = sa;
         w->balls.sb[i] = sb;
+        w->balls.rolling[i] = CORE_MAX(s->rolling[first], s->rolling[second]);
         w->balls.stamp[i] = w->stamp;
         mix_material(s, first, second, &w->balls.friction[i], &w->balls.restitution[i]);
         map_add(&w->map, key, h.index << 1 | 1u);
@@ -226,14 +227,22 @@ void phys_pairs_update(phys_world *w) {
     core_arena_rewind(&w->scratch, mark);
 }
 
+static void wake_partners(phys_world *w, uint32_t sa, uint32_t sb) {
+    const phys_shapes *s = &w->shapes;
+    phys_wake_row(w, phys_slot_row(&w->bodies.set, s->body[phys_slot_row(&s->set, sa)]));
+    phys_wake_row(w, phys_slot_row(&w->bodies.set, s->body[phys_slot_row(&s->set, sb)]));
+}
+
 void phys_pairs_drop_shape(phys_world *w, uint32_t slot) {
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
         if (w->balls.sa[i] == slot || w->balls.sb[i] == slot) {
+            wake_partners(w, w->balls.sa[i], w->balls.sb[i]);
             ball_remove(w, i, &w->pending);
         }
     }
     for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
         if (w->contacts.sa[i] == slot || w->contacts.sb[i] == slot) {
+            wake_partners(w, w->contacts.sa[i], w->contacts.sb[i]);
             manifold_remove(w, i, &w->pending);
         }
     }

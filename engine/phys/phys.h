@@ -73,6 +73,7 @@ typedef struct phys_shape_desc {
     float density;     // kg/m^3, > 0; 0 = 1000
     float friction;    // >= 0, default 0.5; set by phys_shape_desc_default
     float restitution; // [0, 1], default 0
+    float rolling;     // balls: rolling resistance over radius, >= 0, default 0
     uint32_t cookie;
 } phys_shape_desc;
 phys_shape_desc phys_shape_desc_default(phys_shape_type type);

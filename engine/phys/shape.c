@@ -36,6 +36,10 @@ static bool check_material(const phys_shape_desc *s, const char *name) {
         return core_fail("phys shape %s: restitution is %g, expected 0..1", name,
                          (double)s->restitution);
     }
+    if (!(s->rolling >= 0.0f && s->rolling <= 1e3f)) {
+        return core_fail("phys shape %s: rolling is %g, expected 0 or more", name,
+                         (double)s->rolling);
+    }
     return true;
 }
 
@@ -296,6 +300,10 @@ static void update_bounds(phys_world *w, uint32_t i, float dt) {
     phys_shapes *s = &w->shapes;
     uint32_t row = s->row[i];
     core_vec3 way;
+    s->moved[i] = 0;
+    if (w->bodies.flags[row] & PHYS_BODY_ASLEEP) {
+        return;
+    }
     phys_box box = reach_box(w, i, row, dt, &way);
     bool inside = box.lo[0] >= s->x0[i] && box.lo[1] >= s->y0[i] && box.lo[2] >= s->z0[i] &&
                   box.hi[0] <= s->x1[i] && box.hi[1] <= s->y1[i] && box.hi[2] <= s->z1[i];

@@ -9,9 +9,15 @@
 #include <string.h>
 
 #define SOFT_COLORS 64u // colour 64: more contacts on one body than colours, solved one by one
-#define STIFFNESS   0.2f
-#define DAMPING     10.0f
-#define PUSH_MAX    3.0f // m/s
+// Contact frequency over substep frequency; islands with more substeps are those that tremble when
+// stiff: heavy on light, slender towers.
+#define STIFFNESS      0.16f
+#define STIFFNESS_HARD 0.125f
+#define DAMPING        10.0f
+// Rolling resistance, as a part of the radius, of balls that touch more than one thing: without it
+// a heap never comes to rest. A lone ball on a floor has none but its material's.
+#define PILE_ROLLING 0.002f
+#define PUSH_MAX     3.0f // m/s
 
 enum { GROUP_BALLS, GROUP_MANIFOLDS, GROUP_FIXED_BALLS, GROUP_FIXED_MANIFOLDS, GROUPS };
 
@@ -30,6 +36,9 @@ typedef struct soft_place {
 
 typedef struct soft {
     phys_world *world;
+    // What this level of substeps is about: rows of bodies and contacts, and each body row's place.
+    uint32_t *body, *ball, *contact, *index;
+    uint32_t ball_count, contact_count;
     soft_bodies bodies;
     soft_spring spring, spring_fixed;
     soft_group group[GROUPS];
@@ -38,6 +47,7 @@ typedef struct soft {
     soft_manifolds_fn *run_manifolds;
     soft_flat_fn *push, *move;
     bool bounces;
+    uint32_t level;
     float dt, h;
 } soft;
 
@@ -78,20 +88,21 @@ static core_vec3 pull_on(const phys_world *w, uint32_t i, const float *moved) {
     return a;
 }
 
-static void fill_body(soft *s, uint32_t i) {
+static void fill_body(soft *s, uint32_t k) {
     const phys_bodies *b = &s->world->bodies;
-    float *v = s->bodies.velocity + (size_t)i * 8, *p = s->bodies.push + (size_t)i * 8;
-    memset(s->bodies.moved + (size_t)i * 8, 0, 8 * sizeof(float));
-    memset(s->bodies.inertia + (size_t)i * 8, 0, 8 * sizeof(float));
+    uint32_t i = s->body[k];
+    float *v = s->bodies.velocity + (size_t)k * 8, *p = s->bodies.push + (size_t)k * 8;
+    memset(s->bodies.moved + (size_t)k * 8, 0, 8 * sizeof(float));
+    memset(s->bodies.inertia + (size_t)k * 8, 0, 8 * sizeof(float));
     memset(p, 0, 8 * sizeof(float));
     float row[8] = {b->vx[i], b->vy[i], b->vz[i], 0, b->wx[i], b->wy[i], b->wz[i], 0};
     memcpy(v, row, sizeof row);
-    memcpy(s->bodies.mark + (size_t)i * 8, row, sizeof row);
+    memcpy(s->bodies.mark + (size_t)k * 8, row, sizeof row);
     if (b->type[i] != PHYS_DYNAMIC) {
         return;
     }
-    fill_inertia(b, i, s->bodies.inertia + (size_t)i * 8);
-    core_vec3 a = core_v3_scale(pull_on(s->world, i, s->bodies.moved + (size_t)i * 8), s->h);
+    fill_inertia(b, i, s->bodies.inertia + (size_t)k * 8);
+    core_vec3 a = core_v3_scale(pull_on(s->world, i, s->bodies.moved + (size_t)k * 8), s->h);
     memcpy(p, &a, sizeof a);
     core_vec3 t = b->torque[i];
     if (t.x != 0.0f || t.y != 0.0f || t.z != 0.0f) {
@@ -113,16 +124,17 @@ static void make_damping(soft *s, core_arena *arena, uint32_t n) {
     const phys_bodies *b = &s->world->bodies;
     bool any = false;
     for (uint32_t i = 0; i < n; i++) {
-        any |= b->linear_damping[i] != 0.0f || b->angular_damping[i] != 0.0f;
+        any |= b->linear_damping[s->body[i]] != 0.0f || b->angular_damping[s->body[i]] != 0.0f;
     }
     if (!any) {
         return;
     }
     float *keep = s->bodies.keep = CORE_ARENA_ARRAY(arena, float, ((size_t)n + 2) * 8);
     for (uint32_t i = 0; i < n + 2; i++) {
-        bool dynamic = i < n && b->type[i] == PHYS_DYNAMIC;
-        float l = dynamic ? 1.0f / (1.0f + b->linear_damping[i] * s->h) : 1.0f;
-        float a = dynamic ? 1.0f / (1.0f + b->angular_damping[i] * s->h) : 1.0f;
+        uint32_t row = i < n ? s->body[i] : 0;
+        bool dynamic = i < n && b->type[row] == PHYS_DYNAMIC;
+        float l = dynamic ? 1.0f / (1.0f + b->linear_damping[row] * s->h) : 1.0f;
+        float a = dynamic ? 1.0f / (1.0f + b->angular_damping[row] * s->h) : 1.0f;
         for (int k = 0; k < 4; k++) {
             keep[(size_t)i * 8 + (size_t)k] = l;
             keep[(size_t)i * 8 + 4 + (size_t)k] = a;
@@ -133,9 +145,8 @@ static void make_damping(soft *s, core_arena *arena, uint32_t n) {
 // Row n is the one that empty lanes point to; one more pads the flat passes to 16 floats.
 static void make_bodies(soft *s) {
     core_arena *arena = &s->world->scratch;
-    uint32_t n = core_columns_count(&s->world->bodies.set);
+    uint32_t n = s->bodies.count;
     size_t floats = ((size_t)n + 2) * 8;
-    s->bodies.count = n;
     s->bodies.velocity = CORE_ARENA_ARRAY(arena, float, floats);
     s->bodies.moved = CORE_ARENA_ARRAY(arena, float, floats);
     s->bodies.push = CORE_ARENA_ARRAY(arena, float, floats);
@@ -163,36 +174,27 @@ static soft_place place(soft_group *group, uint64_t (*used)[GROUPS], uint8_t g, 
     return (soft_place){g, color, group[g].lanes[color]++};
 }
 
+// A level's contacts are all in reach; a is the one that moves.
 static void color_contacts(soft *s) {
     phys_world *w = s->world;
-    const uint8_t *type = w->bodies.type;
-    uint32_t n = core_columns_count(&w->bodies.set), balls = core_columns_count(&w->balls.set);
-    uint32_t contacts = core_columns_count(&w->contacts.set);
+    uint32_t n = s->bodies.count;
     uint64_t(*used)[GROUPS] = core_arena_alloc(&w->scratch, sizeof *used * (n + 1), "colours");
     memset(used, 0, sizeof *used * (n + 1));
-    s->ball_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, balls + 1);
-    s->contact_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, contacts + 1);
-    for (uint32_t i = 0; i < balls; i++) {
-        if (w->balls.separation[i] >= PHYS_APART) {
-            s->ball_place[i].group = GROUPS;
-            continue;
-        }
-        uint32_t a = w->balls.a[i], b = w->balls.b[i];
-        bool fixed = type[b] != PHYS_DYNAMIC;
+    s->ball_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, s->ball_count + 1);
+    s->contact_place = CORE_ARENA_ARRAY(&w->scratch, soft_place, s->contact_count + 1);
+    for (uint32_t k = 0; k < s->ball_count; k++) {
+        uint32_t i = s->ball[k], a = w->balls.a[i], b = w->balls.b[i];
+        bool flip = !phys_mobile(&w->bodies, a), fixed = flip || !phys_mobile(&w->bodies, b);
         s->bounces |= w->balls.restitution[i] > 0.0f;
-        s->ball_place[i] =
-            place(s->group, used, fixed ? GROUP_FIXED_BALLS : GROUP_BALLS, a, b, fixed);
+        s->ball_place[k] = place(s->group, used, fixed ? GROUP_FIXED_BALLS : GROUP_BALLS,
+                                 s->index[flip ? b : a], s->index[flip ? a : b], fixed);
     }
-    for (uint32_t i = 0; i < contacts; i++) {
-        if (w->contacts.manifold[i].count == 0) {
-            s->contact_place[i].group = GROUPS;
-            continue;
-        }
-        uint32_t a = w->contacts.a[i], b = w->contacts.b[i];
-        bool flip = type[a] != PHYS_DYNAMIC, fixed = flip || type[b] != PHYS_DYNAMIC;
+    for (uint32_t k = 0; k < s->contact_count; k++) {
+        uint32_t i = s->contact[k], a = w->contacts.a[i], b = w->contacts.b[i];
+        bool flip = !phys_mobile(&w->bodies, a), fixed = flip || !phys_mobile(&w->bodies, b);
         s->bounces |= w->contacts.restitution[i] > 0.0f;
-        s->contact_place[i] = place(s->group, used, fixed ? GROUP_FIXED_MANIFOLDS : GROUP_MANIFOLDS,
-                                    flip ? b : a, flip ? a : b, fixed);
+        s->contact_place[k] = place(s->group, used, fixed ? GROUP_FIXED_MANIFOLDS : GROUP_MANIFOLDS,
+                                    s->index[flip ? b : a], s->index[flip ? a : b], fixed);
     }
 }
 
@@ -233,60 +235,59 @@ static uint32_t block_of(const soft_group *group, soft_place p, uint32_t *lane) 
     return group->first[p.color] + (p.color < SOFT_COLORS ? p.lane / SOFT_LANES : p.lane);
 }
 
-static void fill_ball(soft *s, uint32_t i) {
+static void fill_ball(soft *s, uint32_t j) {
     const phys_world *w = s->world;
     const phys_balls *p = &w->balls;
     const phys_bodies *b = &w->bodies;
-    if (s->ball_place[i].group == GROUPS) {
-        return;
-    }
-    uint32_t k;
-    soft_group *group = &s->group[s->ball_place[i].group];
-    ball_block *c = &group->balls[block_of(group, s->ball_place[i], &k)];
-    bool fixed = s->ball_place[i].group == GROUP_FIXED_BALLS;
-    uint32_t a = p->a[i], o = p->b[i];
-    float ra = w->shapes.radius[phys_slot_row(&w->shapes.set, p->sa[i])];
-    float rb = fixed ? 0.0f : w->shapes.radius[phys_slot_row(&w->shapes.set, p->sb[i])];
-    c->a[k] = (int32_t)a;
-    c->b[k] = fixed ? (int32_t)s->bodies.count : (int32_t)o;
-    c->nx[k] = p->nx[i];
-    c->ny[k] = p->ny[i];
-    c->nz[k] = p->nz[i];
+    uint32_t k, i = s->ball[j];
+    soft_group *group = &s->group[s->ball_place[j].group];
+    ball_block *c = &group->balls[block_of(group, s->ball_place[j], &k)];
+    bool fixed = s->ball_place[j].group == GROUP_FIXED_BALLS, flip = !phys_mobile(b, p->a[i]);
+    uint32_t a = flip ? p->b[i] : p->a[i], o = flip ? p->a[i] : p->b[i];
+    uint32_t sa = flip ? p->sb[i] : p->sa[i], so = flip ? p->sa[i] : p->sb[i];
+    float ra = w->shapes.radius[phys_slot_row(&w->shapes.set, sa)];
+    float rb = fixed ? 0.0f : w->shapes.radius[phys_slot_row(&w->shapes.set, so)];
+    float sign = flip ? -1.0f : 1.0f;
+    c->a[k] = (int32_t)s->index[a];
+    c->b[k] = (int32_t)(fixed ? s->bodies.count : s->index[o]);
+    c->nx[k] = sign * p->nx[i];
+    c->ny[k] = sign * p->ny[i];
+    c->nz[k] = sign * p->nz[i];
     c->gap[k] = p->separation[i];
     c->jn[k] = p->jn[i];
-    c->jx[k] = p->jx[i];
-    c->jy[k] = p->jy[i];
-    c->jz[k] = p->jz[i];
+    c->jx[k] = sign * p->jx[i];
+    c->jy[k] = sign * p->jy[i];
+    c->jz[k] = sign * p->jz[i];
     c->ima[k] = b->im[a];
     c->imb[k] = fixed ? 0.0f : b->im[o];
     c->ra[k] = ra;
     c->rb[k] = rb;
-    c->ka[k] = ra * b->ix[a];
-    c->kb[k] = rb * (fixed ? 0.0f : b->ix[o]);
+    c->ia[k] = b->ix[a];
+    c->ib[k] = fixed ? 0.0f : b->ix[o];
+    bool pile = b->touching[a] > 1 && (fixed || b->touching[o] > 1);
+    c->roll[k] = ra * (p->rolling[i] + (pile ? PILE_ROLLING : 0.0f));
     c->friction[k] = p->friction[i];
     c->restitution[k] = p->restitution[i];
 }
 
-static void fill_manifold(soft *s, uint32_t i) {
+static void fill_manifold(soft *s, uint32_t l) {
     const phys_world *w = s->world;
     const phys_bodies *b = &w->bodies;
-    if (s->contact_place[i].group == GROUPS) {
-        return;
-    }
-    uint32_t k, a = w->contacts.a[i], o = w->contacts.b[i];
-    soft_group *group = &s->group[s->contact_place[i].group];
-    manifold_block *c = &group->manifolds[block_of(group, s->contact_place[i], &k)];
+    uint32_t k, i = s->contact[l], a = w->contacts.a[i], o = w->contacts.b[i];
+    soft_group *group = &s->group[s->contact_place[l].group];
+    manifold_block *c = &group->manifolds[block_of(group, s->contact_place[l], &k)];
     const phys_manifold *m = &w->contacts.manifold[i];
-    bool flip = b->type[a] != PHYS_DYNAMIC;
+    bool flip = !phys_mobile(b, a);
     float sign = flip ? -1.0f : 1.0f;
     core_vec3 n = core_v3_scale(m->normal, sign), rub = core_v3_scale(m->friction, sign), t1, t2;
-    c->a[k] = (int32_t)(flip ? o : a);
-    c->b[k] = (int32_t)(flip ? a : o);
+    uint32_t first = flip ? o : a, second = flip ? a : o;
+    c->a[k] = (int32_t)s->index[first];
+    c->b[k] = (int32_t)s->index[second];
     c->nx[k] = n.x;
     c->ny[k] = n.y;
     c->nz[k] = n.z;
-    c->ima[k] = b->im[flip ? o : a];
-    c->imb[k] = b->im[flip ? a : o];
+    c->ima[k] = b->im[first];
+    c->imb[k] = phys_mobile(b, second) ? b->im[second] : 0.0f;
     c->count[k] = (float)m->count;
     c->friction[k] = w->contacts.friction[i];
     c->restitution[k] = w->contacts.restitution[i];
@@ -309,28 +310,24 @@ static void fill_manifold(soft *s, uint32_t i) {
     }
 }
 
-static void store_ball(soft *s, uint32_t i) {
+static void store_ball(soft *s, uint32_t j) {
     phys_balls *p = &s->world->balls;
-    if (s->ball_place[i].group != GROUPS) {
-        uint32_t k;
-        const soft_group *group = &s->group[s->ball_place[i].group];
-        const ball_block *c = &group->balls[block_of(group, s->ball_place[i], &k)];
-        p->jn[i] = c->jn[k];
-        p->jx[i] = c->jx[k];
-        p->jy[i] = c->jy[k];
-        p->jz[i] = c->jz[k];
-    }
+    uint32_t k, i = s->ball[j];
+    const soft_group *group = &s->group[s->ball_place[j].group];
+    const ball_block *c = &group->balls[block_of(group, s->ball_place[j], &k)];
+    float sign = phys_mobile(&s->world->bodies, p->a[i]) ? 1.0f : -1.0f;
+    p->jn[i] = c->jn[k];
+    p->jx[i] = sign * c->jx[k];
+    p->jy[i] = sign * c->jy[k];
+    p->jz[i] = sign * c->jz[k];
 }
 
-static void store_manifold(soft *s, uint32_t i) {
+static void store_manifold(soft *s, uint32_t l) {
+    uint32_t k, i = s->contact[l];
     phys_manifold *m = &s->world->contacts.manifold[i];
-    if (s->contact_place[i].group == GROUPS) {
-        return;
-    }
-    uint32_t k;
-    const soft_group *group = &s->group[s->contact_place[i].group];
-    const manifold_block *c = &group->manifolds[block_of(group, s->contact_place[i], &k)];
-    float sign = s->world->bodies.type[s->world->contacts.a[i]] != PHYS_DYNAMIC ? -1.0f : 1.0f;
+    const soft_group *group = &s->group[s->contact_place[l].group];
+    const manifold_block *c = &group->manifolds[block_of(group, s->contact_place[l], &k)];
+    float sign = phys_mobile(&s->world->bodies, s->world->contacts.a[i]) ? 1.0f : -1.0f;
     float j1 = sign * c->tangent[0].impulse[k], j2 = sign * c->tangent[1].impulse[k];
     m->friction = core_v3(c->tx[0][k] * j1 + c->tx[1][k] * j2, c->ty[0][k] * j1 + c->ty[1][k] * j2,
                           c->tz[0][k] * j1 + c->tz[1][k] * j2);
@@ -410,24 +407,25 @@ static void flat(soft *s, soft_flat_fn *fn) { // two bodies at a time: 16 floats
 
 static void refresh_fields(soft *s) {
     const phys_bodies *b = &s->world->bodies;
-    for (uint32_t i = 0; i < s->bodies.count; i++) {
-        if (b->type[i] == PHYS_DYNAMIC) {
-            core_vec3 a = pull_on(s->world, i, s->bodies.moved + (size_t)i * 8);
+    for (uint32_t k = 0; k < s->bodies.count; k++) {
+        if (b->type[s->body[k]] == PHYS_DYNAMIC) {
+            core_vec3 a = pull_on(s->world, s->body[k], s->bodies.moved + (size_t)k * 8);
             a = core_v3_scale(a, s->h);
-            memcpy(s->bodies.push + (size_t)i * 8, &a, sizeof a);
+            memcpy(s->bodies.push + (size_t)k * 8, &a, sizeof a);
         }
     }
 }
 
 // Writes a body back. Where nothing was touched the way gets the exact term of the constant part of
 // the pull, and the turn follows the free rigid body; elsewhere it is the sum of the substeps.
-static void finish_body(soft *s, uint32_t i) {
+static void finish_body(soft *s, uint32_t k) {
     phys_world *w = s->world;
     phys_bodies *b = &w->bodies;
-    if (b->type[i] == PHYS_STATIC) {
-        return;
+    uint32_t i = s->body[k];
+    if (s->level != 0 && b->type[i] != PHYS_DYNAMIC) {
+        return; // every level carries the kinematic bodies along; one moves them
     }
-    const float *v = s->bodies.velocity + (size_t)i * 8, *p = s->bodies.moved + (size_t)i * 8;
+    const float *v = s->bodies.velocity + (size_t)k * 8, *p = s->bodies.moved + (size_t)k * 8;
     core_vec3 way = core_v3(p[0], p[1], p[2]), turn = core_v3(p[4], p[5], p[6]);
     phys_put3(b->vx, b->vy, b->vz, i, core_v3(v[0], v[1], v[2]));
     phys_put3(b->wx, b->wy, b->wz, i, core_v3(v[4], v[5], v[6]));
@@ -460,26 +458,80 @@ static void solve_substeps(soft *s, int substeps) {
     }
 }
 
-static void step_soft(phys_world *w, float dt) {
+// A contact belongs to the level of what moves in it; both bodies of an island have the same.
+static bool on_level(const phys_bodies *b, uint32_t a, uint32_t o, uint32_t level) {
+    bool ma = phys_mobile(b, a), mo = phys_mobile(b, o);
+    return (ma || mo) && b->level[ma ? a : o] == level;
+}
+
+// Rows of a level. Static and sleeping bodies share the place of the empty lanes: all zeros.
+static void collect(soft *s) {
+    phys_world *w = s->world;
+    const phys_bodies *b = &w->bodies;
+    uint32_t n = core_columns_count(&b->set), balls = core_columns_count(&w->balls.set);
+    uint32_t contacts = core_columns_count(&w->contacts.set), count = 0;
+    s->body = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
+    s->index = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
+    s->ball = CORE_ARENA_ARRAY(&w->scratch, uint32_t, balls + 1);
+    s->contact = CORE_ARENA_ARRAY(&w->scratch, uint32_t, contacts + 1);
+    for (uint32_t i = 0; i < n; i++) {
+        bool here = phys_mobile(b, i) ? b->level[i] == s->level : b->type[i] == PHYS_KINEMATIC;
+        s->index[i] = here ? count : UINT32_MAX;
+        s->body[count] = i;
+        count += here;
+    }
+    s->bodies.count = count;
+    for (uint32_t i = 0; i < n; i++) {
+        s->index[i] = CORE_MIN(s->index[i], count);
+    }
+    for (uint32_t i = 0; i < balls; i++) {
+        s->ball[s->ball_count] = i;
+        s->ball_count += w->balls.separation[i] < PHYS_APART &&
+                         on_level(b, w->balls.a[i], w->balls.b[i], s->level);
+    }
+    for (uint32_t i = 0; i < contacts; i++) {
+        s->contact[s->contact_count] = i;
+        s->contact_count += w->contacts.manifold[i].count != 0 &&
+                            on_level(b, w->contacts.a[i], w->contacts.b[i], s->level);
+    }
+}
+
+static void step_level(phys_world *w, float dt, uint32_t level) {
     size_t mark = core_arena_mark(&w->scratch);
-    int substeps = w->substeps ? w->substeps : w->solver->substeps;
-    soft s = {.world = w, .dt = dt, .h = dt / (float)substeps};
-    s.spring = make_spring(s.h, STIFFNESS);
-    s.spring_fixed = make_spring(s.h, 2.0f * STIFFNESS);
+    int substeps = w->substeps ? w->substeps : w->solver->substeps << level;
+    soft s = {.world = w, .dt = dt, .h = dt / (float)substeps, .level = level};
+    float stiffness = level == 0 ? STIFFNESS : STIFFNESS_HARD;
+    s.spring = make_spring(s.h, stiffness);
+    s.spring_fixed = make_spring(s.h, 2.0f * stiffness);
     s.run_balls = CORE_SIMD_SELECT(phys_soft_balls);
     s.run_manifolds = CORE_SIMD_SELECT(phys_soft_manifolds);
     s.push = CORE_SIMD_SELECT(phys_soft_push);
     s.move = CORE_SIMD_SELECT(phys_soft_move);
-    make_bodies(&s);
-    color_contacts(&s);
-    make_blocks(&s);
-    each(&s, core_columns_count(&w->balls.set), fill_ball);
-    each(&s, core_columns_count(&w->contacts.set), fill_manifold);
-    solve_substeps(&s, substeps);
-    each(&s, core_columns_count(&w->balls.set), store_ball);
-    each(&s, core_columns_count(&w->contacts.set), store_manifold);
-    each(&s, s.bodies.count, finish_body);
+    collect(&s);
+    if (s.bodies.count != 0) {
+        make_bodies(&s);
+        color_contacts(&s);
+        make_blocks(&s);
+        each(&s, s.ball_count, fill_ball);
+        each(&s, s.contact_count, fill_manifold);
+        solve_substeps(&s, substeps);
+        each(&s, s.ball_count, store_ball);
+        each(&s, s.contact_count, store_manifold);
+        each(&s, s.bodies.count, finish_body);
+    }
     core_arena_rewind(&w->scratch, mark);
 }
 
-const phys_solver_method phys_solver_soft = {"soft", 8, 0, step_soft};
+static void step_soft(phys_world *w, float dt) {
+    bool used[PHYS_LEVELS] = {true};
+    for (uint32_t i = 0; i < core_columns_count(&w->bodies.set); i++) {
+        used[w->bodies.level[i]] = true;
+    }
+    for (uint32_t level = PHYS_LEVELS; level-- > 0;) {
+        if (used[level]) {
+            step_level(w, dt, level);
+        }
+    }
+}
+
+const phys_solver_method phys_solver_soft = {"soft", 8, 0, true, step_soft};

@@ -27,7 +27,7 @@ typedef struct soft_spring {
 #define SOFT_LANES CORE_LANES
 #define LANES      _Alignas(CORE_ALIGN) float
 
-// Ball on ball, ball on static: one point, no arm but the radius. Static b: imb = kb = rb = 0.
+// Ball on ball, ball on static: one point, no arm but the radius. Static b: imb = ib = rb = 0.
 typedef struct ball_block {
     _Alignas(CORE_ALIGN) int32_t a[SOFT_LANES];
     int32_t b[SOFT_LANES];
@@ -37,7 +37,8 @@ typedef struct ball_block {
     LANES jx[SOFT_LANES], jy[SOFT_LANES], jz[SOFT_LANES]; // friction impulse, world axes
     LANES ima[SOFT_LANES], imb[SOFT_LANES];               // inverse masses
     LANES ra[SOFT_LANES], rb[SOFT_LANES];                 // radii
-    LANES ka[SOFT_LANES], kb[SOFT_LANES];                 // radius over moment of inertia
+    LANES ia[SOFT_LANES], ib[SOFT_LANES];                 // inverse moments of inertia
+    LANES roll[SOFT_LANES];                               // rolling resistance as a length, m
     LANES mn[SOFT_LANES], mt[SOFT_LANES];                 // effective masses
     LANES friction[SOFT_LANES], restitution[SOFT_LANES];
     LANES approach[SOFT_LANES]; // fastest approach in this step (m/s, <= 0)

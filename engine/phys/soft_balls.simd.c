@@ -7,7 +7,9 @@ static void warm(ball_block *c, int k, soft_bodies *s, bool fixed) {
     rows3 n = rows_load(c->nx + k, c->ny + k, c->nz + k);
     rows3 j = rows_load(c->jx + k, c->jy + k, c->jz + k);
     vf ima = vf_load(c->ima + k), imb = vf_load(c->imb + k);
-    vf ka = vf_load(c->ka + k), kb = vf_load(c->kb + k), jn = vf_load(c->jn + k);
+    vf jn = vf_load(c->jn + k);
+    vf ka = vf_mul(vf_load(c->ra + k), vf_load(c->ia + k));
+    vf kb = vf_mul(vf_load(c->rb + k), vf_load(c->ib + k));
     vf mass = vf_add(ima, imb);
     vf turn = vf_add(vf_mul(vf_load(c->ra + k), ka), vf_mul(vf_load(c->rb + k), kb));
     vf_store(c->mn + k, rows_inverse(mass));
@@ -64,11 +66,25 @@ static void solve(ball_block *c, int k, soft_bodies *s, const soft_spring *sprin
     }
 }
 
+// Slows the turn of one against the other by at most the resistance's torque. Nothing is carried
+// over, so that it can only take energy away.
+static void resist_rolling(const ball_block *c, int k, vf push, rows3 *wa, rows3 *wb, vf ia,
+                           vf ib) {
+    rows3 turn = rows_sub(*wa, *wb);
+    vf speed = vf_sqrt(rows_dot(turn, turn)), give = rows_inverse(vf_add(ia, ib));
+    vf most = vf_mul(vf_load(c->roll + k), push);
+    vm slow = vf_le(vf_mul(speed, give), most);
+    vf share = vf_select(slow, give, vf_mul(most, rows_inverse(speed)));
+    *wa = rows_msub(*wa, turn, vf_mul(share, ia));
+    *wb = rows_mad(*wb, turn, vf_mul(share, ib));
+}
+
 static void relax(ball_block *c, int k, soft_bodies *s, const soft_spring *spring, bool fixed) {
     rows3 n = rows_load(c->nx + k, c->ny + k, c->nz + k);
     vf gap = gap_now(c, k, s, n, fixed), jn = vf_load(c->jn + k);
     vf ima = vf_load(c->ima + k), imb = vf_load(c->imb + k);
-    vf ka = vf_load(c->ka + k), kb = vf_load(c->kb + k);
+    vf ra = vf_load(c->ra + k), ia = vf_load(c->ia + k), ka = vf_mul(ra, ia);
+    vf rb = vf_load(c->rb + k), ib = vf_load(c->ib + k), kb = vf_mul(rb, ib);
     rows3 va = rows_gather(s->velocity, c->a + k, 0), wa = rows_gather(s->velocity, c->a + k, 4);
     rows3 vb = fixed ? rows_zero() : rows_gather(s->velocity, c->b + k, 0);
     rows3 wb = fixed ? rows_zero() : rows_gather(s->velocity, c->b + k, 4);
@@ -80,9 +96,8 @@ static void relax(ball_block *c, int k, soft_bodies *s, const soft_spring *sprin
     vf_store(c->jn + k, total);
     note_approach(c, k, total, vn);
 
-    rows3 spin = {vf_mul(wa.x, vf_load(c->ra + k)), vf_mul(wa.y, vf_load(c->ra + k)),
-                  vf_mul(wa.z, vf_load(c->ra + k))};
-    spin = fixed ? spin : rows_mad(spin, wb, vf_load(c->rb + k));
+    rows3 spin = rows_mul(wa, ra);
+    spin = fixed ? spin : rows_mad(spin, wb, rb);
     rows3 slip = rows_msub(dv, n, vn), turn = rows_cross(n, spin);
     slip = (rows3){vf_add(slip.x, turn.x), vf_add(slip.y, turn.y), vf_add(slip.z, turn.z)};
     rows3 was = rows_load(c->jx + k, c->jy + k, c->jz + k);
@@ -95,11 +110,14 @@ static void relax(ball_block *c, int k, soft_bodies *s, const soft_spring *sprin
     vf_store(c->jy + k, j.y);
     vf_store(c->jz + k, j.z);
     rows3 dj = rows_sub(j, was), turned = rows_cross(n, dj), p = rows_mad(dj, n, d);
+    wa = rows_msub(wa, turned, ka);
+    wb = rows_msub(wb, turned, kb);
+    resist_rolling(c, k, total, &wa, &wb, ia, ib);
     rows_scatter(s->velocity, c->a + k, 0, rows_msub(va, p, ima));
-    rows_scatter(s->velocity, c->a + k, 4, rows_msub(wa, turned, ka));
+    rows_scatter(s->velocity, c->a + k, 4, wa);
     if (!fixed) {
         rows_scatter(s->velocity, c->b + k, 0, rows_mad(vb, p, imb));
-        rows_scatter(s->velocity, c->b + k, 4, rows_msub(wb, turned, kb));
+        rows_scatter(s->velocity, c->b + k, 4, wb);
     }
 }
 

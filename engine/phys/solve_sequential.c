@@ -245,4 +245,4 @@ static void step_sequential(phys_world *w, float dt) {
     core_arena_rewind(&w->scratch, mark);
 }
 
-const phys_solver_method phys_solver_sequential = {"sequential", 4, 2, step_sequential};
+const phys_solver_method phys_solver_sequential = {"sequential", 4, 2, false, step_sequential};

@@ -41,6 +41,7 @@ static bool pick_solver(phys_world *w, const char *name) {
     for (size_t i = 0; i < CORE_COUNT_OF(solvers); i++) {
         if (strcmp(name, solvers[i]->name) == 0) {
             w->solver = solvers[i];
+            phys_wake_all(w);
             return true;
         }
     }
@@ -94,11 +95,12 @@ phys_world *phys_world_create(const phys_world_desc *d) {
     for (int i = 0; i < 32; i++) {
         w->rule[i] = UINT32_MAX;
     }
+    w->sleep = true;
     w->substeps = d->substeps;
     w->iterations = d->iterations;
-    if (!pick_broad(w, d->broad ? d->broad : "auto") ||
-        !pick_solver(w, d->solver ? d->solver : solvers[0]->name) ||
-        !make_storage(w, d->max_bodies ? d->max_bodies : 1u << 20)) {
+    if (!make_storage(w, d->max_bodies ? d->max_bodies : 1u << 20) ||
+        !pick_broad(w, d->broad ? d->broad : "auto") ||
+        !pick_solver(w, d->solver ? d->solver : solvers[0]->name)) {
         phys_world_destroy(w);
         return NULL;
     }
@@ -126,6 +128,7 @@ void phys_world_destroy(phys_world *w) {
 void phys_world_set_gravity(phys_world *w, core_vec3 g) {
     if (phys_finite3(g)) {
         w->gravity = g;
+        phys_wake_all(w);
         w->measured = false;
         return;
     }
@@ -146,7 +149,7 @@ static bool set_int(const char *name, const char *value, int lo, int hi, int *ou
 }
 
 bool phys_world_set(phys_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"broad", "iterations", "solver", "substeps"};
+    static const char *const names[] = {"broad", "iterations", "sleep", "solver", "substeps"};
     if (strcmp(name, "broad") == 0) {
         return pick_broad(w, value);
     }
@@ -158,6 +161,15 @@ bool phys_world_set(phys_world *w, const char *name, const char *value) {
     }
     if (strcmp(name, "iterations") == 0) {
         return set_int(name, value, 0, 256, &w->iterations);
+    }
+    if (strcmp(name, "sleep") == 0) {
+        bool on = strcmp(value, "on") == 0;
+        if (!on && strcmp(value, "off") != 0) {
+            return core_fail("phys setting sleep: '%s', expected on or off", value);
+        }
+        w->sleep = on;
+        phys_wake_all(w);
+        return true;
     }
     const char *near = core_nearest(name, names, CORE_COUNT_OF(names));
     return core_fail("phys setting '%s' is unknown%s%s", name, near ? ", did you mean " : "",
@@ -173,6 +185,7 @@ bool phys_world_set_rule(phys_world *w, uint32_t a, uint32_t b, bool collide) {
         return false;
     }
     w->pairs_stale = true;
+    phys_wake_all(w);
     w->rule[a] = collide ? w->rule[a] | 1u << b : w->rule[a] & ~(1u << b);
     w->rule[b] = collide ? w->rule[b] | 1u << a : w->rule[b] & ~(1u << a);
     return true;
@@ -220,7 +233,7 @@ static void finish_step(phys_world *w, float dt) {
         if (b->type[i] == PHYS_DYNAMIC && (f.x != 0.0f || f.y != 0.0f || f.z != 0.0f)) {
             w->work += (double)core_v3_dot(f, phys_get3(b->vx, b->vy, b->vz, i)) * (double)dt;
         }
-        if (b->type[i] != PHYS_STATIC) {
+        if (phys_mobile(b, i) || b->type[i] == PHYS_KINEMATIC) {
             phys_body_sync_origin(b, i);
         }
     }
@@ -243,8 +256,11 @@ bool phys_world_step(phys_world *w, float dt) {
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_NARROW);
     phys_narrow_update(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_NARROW);
-    core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS_ISLANDS);
     phys_events_contacts(w, dt);
+    phys_islands_update(w, dt);
+    core_stage_end(w->metrics, CORE_STAGE_PHYS_ISLANDS);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
     w->solver->step(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
     finish_step(w, dt);
@@ -277,7 +293,7 @@ size_t phys_world_bytes(const phys_world *w) {
 void phys_world_counts(const phys_world *w, core_metrics *m) {
     uint32_t n = phys_body_count(w), awake = 0;
     for (uint32_t i = 0; i < n; i++) {
-        awake += w->bodies.type[i] != PHYS_STATIC;
+        awake += phys_mobile(&w->bodies, i) || w->bodies.type[i] == PHYS_KINEMATIC;
     }
     core_metrics_set(m, CORE_COUNT_BODIES, n);
     core_metrics_set(m, CORE_COUNT_AWAKE, awake);
@@ -286,7 +302,7 @@ void phys_world_counts(const phys_world *w, core_metrics *m) {
                      core_columns_count(&w->balls.set) + core_columns_count(&w->contacts.set));
     core_metrics_set(m, CORE_COUNT_CONTACTS, w->touching);
     core_metrics_set(m, CORE_COUNT_JOINTS, 0);
-    core_metrics_set(m, CORE_COUNT_ISLANDS, 0);
+    core_metrics_set(m, CORE_COUNT_ISLANDS, w->islands);
     core_metrics_set(m, CORE_COUNT_TRIGGERS, core_columns_count(&w->triggers.set));
 }
 

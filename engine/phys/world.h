@@ -34,6 +34,8 @@ enum {
     PHYS_BODY_FRAME = 1u,     // principal axes differ from the body's: `iq*` is used
     PHYS_BODY_ISOTROPIC = 2u, // equal moments (balls): no gyroscopic term, no inertia rotation
     PHYS_BODY_LOST = 4u,      // became non-finite: frozen, named once, left out
+    PHYS_BODY_ASLEEP = 16u,   // at rest with its island: takes no part until touched
+    PHYS_BODY_CREEPS = 32u,   // left its place of rest, but slowly
     PHYS_BODY_EVENTS = 8u     // contacts are reported
 };
 
@@ -75,6 +77,11 @@ enum {
     X(uint16_t, flags, CORE_COLUMN_STATE)                                                          \
     X(uint32_t, shape, CORE_COLUMN_STATE) /* first shape's slot; 0: none */                        \
     X(uint64_t, user, CORE_COLUMN_STATE)                                                           \
+    X(float, still, CORE_COLUMN_STATE) /* s within reach of rest_place, rest_turn */               \
+    X(core_vec3, rest_place, CORE_COLUMN_STATE)                                                    \
+    X(core_quat, rest_turn, CORE_COLUMN_STATE)                                                     \
+    X(uint32_t, sleep_island, CORE_COLUMN_STATE)                                                   \
+    X(uint8_t, level, 0)     /* of substeps */                                                     \
     X(uint32_t, touching, 0) /* contacts of this step */                                           \
     X(core_vec3, seen, 0)                                                                          \
     X(uint8_t, through, 0) /* accuracy: place at the last sample */
@@ -92,6 +99,7 @@ CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
     X(core_vec3, position, CORE_COLUMN_STATE)                                                      \
     X(core_quat, rotation, CORE_COLUMN_STATE)                                                      \
     X(float, friction, CORE_COLUMN_STATE)                                                          \
+    X(float, rolling, CORE_COLUMN_STATE)                                                           \
     X(float, restitution, CORE_COLUMN_STATE)                                                       \
     X(float, x0, CORE_COLUMN_STATE)                                                                \
     X(float, y0, CORE_COLUMN_STATE)                                                                \
@@ -135,6 +143,7 @@ typedef struct phys_manifold {
     X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
     X(float, jz, CORE_COLUMN_STATE)                                                                \
     X(float, friction, CORE_COLUMN_STATE)                                                          \
+    X(float, rolling, CORE_COLUMN_STATE)                                                           \
     X(float, restitution, CORE_COLUMN_STATE)                                                       \
     X(float, nx, 0)                                                                                \
     X(float, ny, 0)                                                                                \
@@ -224,8 +233,10 @@ typedef struct phys_broad_method {
 typedef struct phys_solver_method {
     const char *name;
     int substeps, iterations; // defaults
+    bool sleeps;              // leaves sleeping bodies out and has levels of substeps
     void (*step)(phys_world *world, float dt);
 } phys_solver_method;
+#define PHYS_LEVELS 3u // substeps of the solver's default, twice and four times as many
 
 struct phys_world {
     core_jobs *jobs;
@@ -256,7 +267,9 @@ struct phys_world {
     uint32_t order_count, order_capacity;
     core_arena scratch; // of one step
     uint32_t stamp;     // number of the broad phase, marks living pairs
-    uint32_t touching;  // contacts of the last step
+    bool sleep;
+    uint32_t islands;  // of the last step
+    uint32_t touching; // contacts of the last step
     // Accuracy: the first sample since bodies were last added, moved or removed, and the work that
     // forces did since.
     bool measured;
@@ -294,6 +307,16 @@ static inline uint32_t phys_slot_row(const core_columns *set, uint32_t slot) {
 }
 static inline uint32_t phys_row_slot(const core_columns *set, uint32_t row) {
     return set->pool.slot_of_row[row] + 1;
+}
+
+// Dynamic and awake; moves: that, or kinematic with a velocity.
+static inline bool phys_mobile(const phys_bodies *b, uint32_t i) {
+    return b->type[i] == PHYS_DYNAMIC && (b->flags[i] & PHYS_BODY_ASLEEP) == 0;
+}
+static inline bool phys_moves(const phys_bodies *b, uint32_t i) {
+    return phys_mobile(b, i) || (b->type[i] == PHYS_KINEMATIC &&
+                                 (b->vx[i] != 0.0f || b->vy[i] != 0.0f || b->vz[i] != 0.0f ||
+                                  b->wx[i] != 0.0f || b->wy[i] != 0.0f || b->wz[i] != 0.0f));
 }
 
 // shape.c
@@ -349,6 +372,11 @@ void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, 
 // Picks at most 4 of n > 4 points (same plane, unit normal): keep[3] may be -1.
 void phys_manifold_reduce(const core_vec3 *p, const float *separation, int n, core_vec3 normal,
                           int keep[4]);
+
+// islands.c
+void phys_islands_update(phys_world *world, float dt);
+void phys_wake_row(phys_world *world, uint32_t row); // with its island
+void phys_wake_all(phys_world *world);
 
 // events.c, fields.c
 void phys_event_push(phys_event_list *list, const phys_event *event);

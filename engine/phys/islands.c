@@ -1,0 +1,227 @@
+// Islands: bodies that touch each other, directly or through others. An island at rest sleeps as a
+// whole; one that is hard to solve (heavy on light, a slender tower) gets more substeps than the
+// rest of the world.
+#include "phys/world.h"
+
+#include <string.h>
+
+// A body is at rest when it takes longer than 0.5 s to leave a place and direction by this much; an
+// island of such bodies sleeps. A bound on the way, not on speed: 1 cm/s goes on, trembling does
+// not count.
+#define REST_DISTANCE 0.0015f   // m
+#define REST_COSINE   0.999997f // of half an angle of 0.005 rad
+#define REST_TIME     0.5f
+
+// Substeps over the solver's default by level, and what leads there.
+#define HEAVY_RATIO      30.0f // mass of one body over that of another it touches
+#define VERY_HEAVY_RATIO 300.0f
+#define SLENDER_RATIO    4.0f // height over width along gravity
+#define SLENDER_BODIES   8u
+
+typedef struct island {
+    core_vec3 lo, hi;
+    float ratio;
+    uint32_t count;
+    bool restless;
+} island;
+
+static uint32_t find_root(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void join(uint32_t *parent, uint32_t a, uint32_t b) { // the lower row leads
+    a = find_root(parent, a);
+    b = find_root(parent, b);
+    parent[CORE_MAX(a, b)] = CORE_MIN(a, b);
+}
+
+void phys_wake_row(phys_world *w, uint32_t row) {
+    phys_bodies *b = &w->bodies;
+    b->still[row] = 0.0f;
+    b->flags[row] &= (uint16_t)~PHYS_BODY_CREEPS;
+    if ((b->flags[row] & PHYS_BODY_ASLEEP) == 0) {
+        return;
+    }
+    uint32_t id = b->sleep_island[row];
+    for (uint32_t i = 0; i < core_columns_count(&b->set); i++) {
+        if ((b->flags[i] & PHYS_BODY_ASLEEP) && b->sleep_island[i] == id) {
+            b->flags[i] &= (uint16_t) ~(PHYS_BODY_ASLEEP | PHYS_BODY_CREEPS);
+            b->still[i] = 0.0f;
+        }
+    }
+}
+
+void phys_wake_all(phys_world *w) {
+    phys_bodies *b = &w->bodies;
+    for (uint32_t i = 0; i < core_columns_count(&b->set); i++) {
+        b->flags[i] &= (uint16_t) ~(PHYS_BODY_ASLEEP | PHYS_BODY_CREEPS);
+        b->still[i] = 0.0f;
+    }
+}
+
+// A touch by something that moves wakes.
+static void wake_touched(phys_world *w, uint32_t a, uint32_t b) {
+    if (phys_moves(&w->bodies, a) && (w->bodies.flags[b] & PHYS_BODY_ASLEEP)) {
+        phys_wake_row(w, b);
+    } else if (phys_moves(&w->bodies, b) && (w->bodies.flags[a] & PHYS_BODY_ASLEEP)) {
+        phys_wake_row(w, a);
+    }
+}
+
+static void wake_by_touch(phys_world *w) {
+    for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
+        if (w->balls.separation[i] < PHYS_APART) {
+            wake_touched(w, w->balls.a[i], w->balls.b[i]);
+        }
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->contacts.set); i++) {
+        if (w->contacts.manifold[i].count != 0) {
+            wake_touched(w, w->contacts.a[i], w->contacts.b[i]);
+        }
+    }
+}
+
+// Slow enough to be on its way for REST_TIME without leaving the place.
+static bool creeps(const phys_bodies *b, uint32_t i) {
+    core_vec3 v = phys_get3(b->vx, b->vy, b->vz, i);
+    const float limit = 2.0f * REST_DISTANCE / REST_TIME;
+    return core_v3_dot(v, v) < limit * limit;
+}
+
+static void watch_rest(phys_bodies *b, uint32_t i, float dt) {
+    core_vec3 d = core_v3_sub(phys_get3(b->cx, b->cy, b->cz, i), b->rest_place[i]);
+    core_quat q = phys_body_quat(b, i), r = b->rest_turn[i];
+    float cosine = q.x * r.x + q.y * r.y + q.z * r.z + q.w * r.w;
+    if (core_v3_dot(d, d) > REST_DISTANCE * REST_DISTANCE || core_absf(cosine) < REST_COSINE) {
+        bool slow = b->still[i] >= REST_TIME && creeps(b, i);
+        b->flags[i] =
+            (uint16_t)((b->flags[i] & ~PHYS_BODY_CREEPS) | (slow ? PHYS_BODY_CREEPS : 0u));
+        b->rest_place[i] = phys_get3(b->cx, b->cy, b->cz, i);
+        b->rest_turn[i] = q;
+        b->still[i] = 0.0f;
+    } else {
+        b->still[i] += dt;
+    }
+}
+
+static bool rests(const phys_bodies *b, uint32_t i) {
+    return b->still[i] >= REST_TIME || ((b->flags[i] & PHYS_BODY_CREEPS) && creeps(b, i));
+}
+
+static void note_pair(const phys_bodies *b, uint32_t *parent, float *ratio, uint32_t i,
+                      uint32_t j) {
+    if (!phys_mobile(b, i) || !phys_mobile(b, j)) {
+        return;
+    }
+    join(parent, i, j);
+    float r = b->im[i] > b->im[j] ? b->im[i] / b->im[j] : b->im[j] / b->im[i];
+    ratio[i] = CORE_MAX(ratio[i], r);
+}
+
+static void gather_pairs(phys_world *w, uint32_t *parent, float *ratio) {
+    for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
+        if (!w->balls.fixed[i] && w->balls.separation[i] < PHYS_APART) {
+            note_pair(&w->bodies, parent, ratio, w->balls.a[i], w->balls.b[i]);
+        }
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->contacts.set); i++) {
+        if (w->contacts.manifold[i].count != 0) {
+            note_pair(&w->bodies, parent, ratio, w->contacts.a[i], w->contacts.b[i]);
+        }
+    }
+}
+
+static uint8_t island_level(const phys_world *w, const island *s) {
+    if (s->ratio > VERY_HEAVY_RATIO) {
+        return 2;
+    }
+    core_vec3 size = core_v3_sub(s->hi, s->lo);
+    core_vec3 up = phys_unit(w->gravity, core_v3(0, 0, 0));
+    float height = core_absf(core_v3_dot(size, phys_abs3(up)));
+    core_vec3 flat = core_v3_sub(size, core_v3_scale(phys_abs3(up), height));
+    bool slender = s->count >= SLENDER_BODIES && height > SLENDER_RATIO * core_v3_length(flat);
+    return s->ratio > HEAVY_RATIO || slender ? 1 : 0;
+}
+
+static void put_to_sleep(phys_bodies *b, uint32_t i, uint32_t id) {
+    b->flags[i] |= PHYS_BODY_ASLEEP;
+    b->sleep_island[i] = id;
+    phys_put3(b->vx, b->vy, b->vz, i, core_v3(0, 0, 0));
+    phys_put3(b->wx, b->wy, b->wz, i, core_v3(0, 0, 0));
+}
+
+// Sums up islands by their leading rows. Returns how many there are.
+static uint32_t sum_islands(const phys_world *w, uint32_t *parent, const float *ratio, island *sum,
+                            uint32_t n) {
+    const phys_bodies *b = &w->bodies;
+    uint32_t islands = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        if (!phys_mobile(b, i)) {
+            continue;
+        }
+        uint32_t root = find_root(parent, i);
+        core_vec3 p = phys_get3(b->cx, b->cy, b->cz, i);
+        if (root == i) {
+            sum[i] = (island){.lo = p, .hi = p};
+            islands++;
+        }
+        island *s = &sum[root];
+        s->lo = core_v3(CORE_MIN(s->lo.x, p.x), CORE_MIN(s->lo.y, p.y), CORE_MIN(s->lo.z, p.z));
+        s->hi = core_v3(CORE_MAX(s->hi.x, p.x), CORE_MAX(s->hi.y, p.y), CORE_MAX(s->hi.z, p.z));
+        s->ratio = CORE_MAX(s->ratio, ratio[i]);
+        s->restless |= !rests(b, i);
+        s->count++;
+    }
+    return islands;
+}
+
+// After the narrow phase: wakes, watches, puts to sleep, and sets each body's level of substeps.
+void phys_islands_update(phys_world *w, float dt) {
+    phys_bodies *b = &w->bodies;
+    uint32_t n = core_columns_count(&b->set);
+    bool sleeps = w->sleep && w->solver->sleeps, levels = w->substeps == 0 && w->solver->sleeps;
+    w->islands = 0;
+    if (!sleeps && !levels) {
+        memset(b->level, 0, n);
+        return;
+    }
+    if (sleeps) {
+        wake_by_touch(w);
+        for (uint32_t i = 0; i < n; i++) {
+            if (phys_mobile(b, i)) {
+                watch_rest(b, i, dt);
+            }
+        }
+    }
+    size_t mark = core_arena_mark(&w->scratch);
+    uint32_t *parent = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
+    float *ratio = CORE_ARENA_ARRAY(&w->scratch, float, n + 1);
+    island *sum = CORE_ARENA_ARRAY(&w->scratch, island, n + 1);
+    for (uint32_t i = 0; i < n; i++) {
+        parent[i] = i;
+        ratio[i] = 1.0f;
+    }
+    gather_pairs(w, parent, ratio);
+    w->islands = sum_islands(w, parent, ratio, sum, n);
+    for (uint32_t i = 0; i < n; i++) {
+        if (!phys_mobile(b, i)) {
+            continue;
+        }
+        uint32_t root = find_root(parent, i);
+        b->level[i] = levels ? island_level(w, &sum[root]) : 0;
+        if (sleeps && !sum[root].restless) {
+            b->level[i] = PHYS_LEVELS; // marked: flags are read until all are looked at
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        if (b->level[i] == PHYS_LEVELS) {
+            b->level[i] = 0;
+            put_to_sleep(b, i, phys_row_slot(&b->set, find_root(parent, i)));
+        }
+    }
+    core_arena_rewind(&w->scratch, mark);
+}
