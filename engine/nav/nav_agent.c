@@ -238,6 +238,14 @@ static bool between(core_vec3 a, core_vec3 b, core_vec3 p) {
     return along > 0.0f && along < core_v3_dot(way, way);
 }
 
+// Whether p has passed a towards b: clearly in that direction from a, and not far from it.
+static bool passed(core_vec3 a, core_vec3 b, core_vec3 p, float far) {
+    core_vec3 from = core_v3_sub(p, a), way = core_v3_sub(b, a);
+    float along = core_v3_dot(from, way), square = core_v3_dot(from, from);
+    return square < far * far && along > 0.0f &&
+           along * along > 0.5f * square * core_v3_dot(way, way);
+}
+
 // Corners of a new path. The node nearest to a point may lie behind it: who stands between the
 // first two nodes goes to the second, and a goal between the last two is not overshot.
 static void take_path(nav_world *w, uint32_t row, uint32_t path) {
@@ -336,7 +344,9 @@ static bool advance(nav_world *w, uint32_t row, uint32_t path, float dt, core_ve
         if (a->driven[row] && core_absf(to.y) <= STEP_HEIGHT) {
             to.y = 0.0f; // physics decides how high it stands
         }
-        if (core_v3_dot(to, to) > near * near) {
+        // A crowd may have pushed it past a corner.
+        bool beyond = !last && passed(*target, next, here, 4.0f * a->radius[row]);
+        if (core_v3_dot(to, to) > near * near && !beyond) {
             return true;
         }
         a->corner[row]++;
@@ -467,8 +477,11 @@ void nav_agents_step(nav_world *w, float dt) {
     for (uint32_t row = 0; row < count; row++) {
         steer(w, row, dt);
     }
-    for (uint32_t row = 0; row < count; row++) {
+    for (uint32_t row = 0; w->no_avoidance && row < count; row++) {
         a->nx[row] = a->wx[row], a->nz[row] = a->wz[row];
+    }
+    if (!w->no_avoidance) {
+        nav_crowd_avoid(w, dt);
     }
     for (uint32_t row = 0; row < count; row++) {
         move(a, row, dt);

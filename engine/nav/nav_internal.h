@@ -130,6 +130,18 @@ typedef struct nav_scratch {
     uint32_t stamp; // of the last query; records are cleared when it wraps
 } nav_scratch;
 
+// Agents sorted by cell for avoidance; rebuilt each step, grows with the number of agents.
+typedef struct nav_crowd {
+    void *block; // all arrays below
+    float *px, *py, *pz, *vx, *vz, *radius;
+    int32_t *cell_x, *cell_z;
+    uint32_t *row;   // of the agent
+    uint32_t *key;   // [row] its bucket
+    uint32_t *start; // [buckets + 1]
+    uint32_t capacity, buckets;
+    float range, per_cell; // m within which neighbours count; cells per m
+} nav_crowd;
+
 // ---- uniform grids ----
 
 // Padded by a blocked cell on every side: cell (x, y) is number (y + 1) * stride + x + 1.
@@ -197,10 +209,11 @@ struct nav_world {
     nav_agents agent;
     nav_grids grid;
     nav_scratch scratch;
+    nav_crowd crowd;
     nav_grid_scratch *grid_scratch; // made with the first grid
     nav_heuristic heuristic;        // of paths
     float weight;
-    bool avoid;
+    bool no_avoidance;
 };
 
 // Row of a live graph, CORE_NO_ROW + core_fail for others.
@@ -217,6 +230,9 @@ double nav_octile(double dx, double dy, double dz);
 void nav_grid_scratch_release(nav_world *world);
 // nav_path.c
 void nav_path_refresh(nav_world *world, uint32_t row); // plans when its graph has changed
+// nav_avoid.c
+void nav_crowd_avoid(nav_world *world, float dt); // wanted velocities to safe ones
+void nav_crowd_release(nav_crowd *crowd);
 // nav_agent.c
 void nav_agents_step(nav_world *world, float dt);
 

@@ -52,6 +52,7 @@ void nav_world_destroy(nav_world *w) {
     core_columns_release(&w->path.set);
     core_columns_release(&w->agent.set);
     nav_scratch_release(&w->scratch);
+    nav_crowd_release(&w->crowd);
     core_free(w);
 }
 
@@ -71,7 +72,7 @@ bool nav_world_step(nav_world *w, float dt) {
 // ---- settings ----
 
 static const char *const heuristics[] = {"euclid", "octile", "zero", NULL};
-static const char *const avoidances[] = {"none", NULL};
+static const char *const avoidances[] = {"orca", "none", NULL};
 static const char *const grid_methods[] = {"jump", "astar", NULL};
 static const char *const settings[] = {"heuristic", "weight", "avoidance"};
 
@@ -117,8 +118,9 @@ bool nav_world_set(nav_world *w, const char *name, const char *value) {
     if (strcmp(name, "avoidance") == 0) {
         int i = place_of(value, avoidances);
         if (i < 0) {
-            return core_fail("nav.avoidance=%s: expected none", value);
+            return core_fail("nav.avoidance=%s: expected orca or none", value);
         }
+        w->no_avoidance = i == 1;
         return true;
     }
     const char *near = core_nearest(name, settings, CORE_COUNT_OF(settings));
@@ -162,6 +164,7 @@ size_t nav_world_bytes(const nav_world *w) {
                  sizeof(uint64_t) * ((size_t)g->row_words * (g->height + 2) +
                                      (size_t)g->column_words * (g->width + 2));
     }
+    bytes += w->crowd.capacity * 12 * sizeof(float);
     if (w->grid_scratch) {
         bytes += sizeof *w->grid_scratch +
                  w->grid_scratch->capacity * (sizeof(nav_grid_record) + sizeof(uint64_t));
