@@ -273,6 +273,11 @@ bool app_scene_open(app_run *r) {
     if (!configure(r) || !apply_settings(r)) {
         return false;
     }
+    for (uint32_t i = 0; i < r->opt->mod_count; i++) {
+        if (!script_add_mod(r->script, r->opt->mod[i])) {
+            return app_fail(r, APP_EXIT_USAGE);
+        }
+    }
     if (loaded && !script_load(r->script) && !script_failed(r)) {
         return false;
     }

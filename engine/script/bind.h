@@ -113,10 +113,13 @@ typedef struct bind_fn {
     const char *doc;  // one line, ends with a full stop
     const bind_arg *args;
     const bind_return *returns;
-    size_t size;       // of the args struct
-    unsigned phases;   // bind_phase bits
-    bool mod;          // mods may call it
-    uint32_t cost;     // instructions that a mod pays for one call, beside its own
+    size_t size;     // of the args struct
+    unsigned phases; // bind_phase bits
+    bool mod;        // mods may call it
+    bool mod_only;   // only mods have it
+    bool immediate;  // called by a mod it acts at once; other changes of the simulation wait until
+                     // the mod's call has ended well
+    uint32_t cost;   // instructions that a mod pays for one call, beside its own
     bind_handler *run; // NULL: `numbers`, or written in Lua (scripts/corsac), checked all the same
     bind_number_method
         *numbers; // in place of run; `size` is then free, BIND_NUMBER args without `at`

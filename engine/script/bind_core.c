@@ -2,6 +2,7 @@
 #include "core/log.h"
 #include "script/internal.h"
 #include "script/json.h"
+#include "script/mod.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -194,13 +195,21 @@ static const char *join(lua_State *L, int first) {
 }
 
 static int log_line(script *s, lua_State *L, void *args) {
-    (void)s;
-    core_log(CORE_LOG_INFO, "%s", join(L, ((rest_args *)args)->first));
+    const char *text = join(L, ((rest_args *)args)->first);
+    if (s->as_mod) {
+        core_log(CORE_LOG_INFO, "mod %s: %s", s->as_mod->name, text);
+    } else {
+        core_log(CORE_LOG_INFO, "%s", text);
+    }
     return 0;
 }
 
 static int warn(script *s, lua_State *L, void *args) {
     const char *text = join(L, ((rest_args *)args)->first);
+    if (s->as_mod) {
+        core_log(CORE_LOG_WARN, "mod %s: %s", s->as_mod->name, text);
+        return 0;
+    }
     core_log(CORE_LOG_WARN, "%s", text);
     if (s->host.warning) {
         s->host.warning(s->host.ctx, text);

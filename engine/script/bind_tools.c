@@ -142,7 +142,7 @@ static const bind_fn root_functions[] = {
     {"wait", "Inside corsac.spawn: goes on after a time (at least one step).",
      BIND_ARGS({"seconds", BIND_NUMBER, BIND_AT(wait_args, seconds), "", "s", BIND_NOT_NEGATIVE,
                 .optional = true, .def_text = "one step"}),
-     NULL, sizeof(wait_args), BIND_SIM, .mod = true, .cost = 10, .run = wait},
+     NULL, sizeof(wait_args), BIND_SIM, .mod = true, .cost = 10, .immediate = true, .run = wait},
     {"waitFor", "Inside corsac.spawn: goes on in the step after an event and gives its arguments.",
      BIND_ARGS({"event", BIND_STRING, BIND_AT(wait_args, event), "name, as given to corsac.emit"}),
      BIND_RETURNS({"...", "any", NULL}), sizeof(wait_args), BIND_SIM, .mod = true, .cost = 10,

@@ -1,6 +1,7 @@
 // Errors of scripts: their texts with reason, nearest name and traceback, and where they are kept.
 #include "core/log.h"
 #include "script/internal.h"
+#include "script/mod.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -90,6 +91,10 @@ static int with_traceback(lua_State *L) {
 }
 
 void script_record_error(script *s, lua_State *L) {
+    if (s->as_mod) {
+        script_mod_report(s, L);
+        return;
+    }
     const char *text = lua_tostring(L, -1);
     core_free(s->last_error);
     s->last_error = script_copy_text(text ? text : "error without a text");

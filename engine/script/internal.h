@@ -7,7 +7,12 @@
 
 #include <lauxlib.h>
 
-enum { SCRIPT_TYPES_MAX = 32, SCRIPT_EXPECT_MAX = 256, SCRIPT_PARAM_MAX = 256 };
+enum {
+    SCRIPT_TYPES_MAX = 32,
+    SCRIPT_EXPECT_MAX = 256,
+    SCRIPT_PARAM_MAX = 256,
+    SCRIPT_MODS_MAX = 32
+};
 
 typedef struct script_type_slot {
     const bind_type *type;
@@ -26,6 +31,7 @@ typedef struct script_expect {
     double found;
 } script_expect;
 
+struct script_mod;
 struct script {
     lua_State *L;
     scene *scene;
@@ -52,10 +58,14 @@ struct script {
     int error_screen_ref; // scripts/corsac/error.lua
     char root[200];       // virtual folder of the game with its '/', "" for the tree's root
     lua_State *task;      // the coroutine of corsac.spawn that runs now; NULL: none
+    lua_State *service;   // thread of L in which mods reach the game
     bool awake;           // tasks wait for a step
-    char game[64];        // folder name of the player's files
-    core_vfs *save;       // the player's files, made on first use
-    char *given_data;     // JSON from the former scene
+    struct script_mod *mods[SCRIPT_MODS_MAX]; // in order, of a game
+    int mod_count;
+    struct script_mod *as_mod; // of a mod's own state
+    char game[64];             // folder name of the player's files
+    core_vfs *save;            // the player's files, made on first use
+    char *given_data;          // JSON from the former scene
 };
 
 // Lua's userdata of an object.
@@ -67,6 +77,10 @@ typedef struct bind_object {
 // The engine's C side of Lua's base library: ordered pairs, printable names, seeded random numbers,
 // no clock, no files (state.c).
 lua_State *script_state_create(script *s);
+// The part that mods have too: pushes a table of the functions that scripts/corsac builds on.
+void script_push_engine(script *s, lua_State *L);
+// Runs scripts/corsac/NAME.lua with the engine table ("corsac.engine" of the registry).
+bool script_run_part(script *s, lua_State *L, const char *name);
 // The random stream of what runs now: the simulation's or the view's.
 core_rng *script_stream(script *s);
 // Embedded text of a file of scripts/corsac ("boot.lua"); NULL when there is none.

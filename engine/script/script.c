@@ -3,6 +3,7 @@
 
 #include "core/log.h"
 #include "script/internal.h"
+#include "script/mod.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,6 +45,7 @@ void script_destroy(script *s) {
     if (!s) {
         return;
     }
+    script_mods_destroy(s);
     if (s->L) {
         lua_close(s->L);
     }
@@ -77,6 +79,24 @@ static bool push_callback(script *s, const char *name, uint32_t phase) {
     return true;
 }
 
+// Mods hear of the engine's own events too, in its phase.
+static void tell_mods(script *s, uint32_t phase, const char *name, bool before, const double *dt) {
+    if (s->mod_count == 0) {
+        return;
+    }
+    script_pack args = {0};
+    uint32_t was = s->phase;
+    if (dt) {
+        lua_pushnumber(s->L, *dt);
+        script_pack_value(s, s->L, -1, &args);
+        lua_pop(s->L, 1);
+    }
+    s->phase = phase;
+    script_mods_event(s, name, before, &args);
+    s->phase = was;
+    script_pack_release(&args);
+}
+
 static bool call_callback(script *s, uint32_t phase, int argc) {
     if (script_call(s, phase, argc, 0)) {
         return true;
@@ -87,8 +107,7 @@ static bool call_callback(script *s, uint32_t phase, int argc) {
     return false;
 }
 
-bool script_load(script *s) {
-    s->seed = scene_rng(s->scene, CORE_RNG_SIM)->seed;
+static bool run_load(script *s) {
     if (!push_callback(s, "load", BIND_LOAD)) {
         return !(s->stopped & BIND_LOAD);
     }
@@ -100,6 +119,15 @@ bool script_load(script *s) {
     return call_callback(s, BIND_LOAD, 1);
 }
 
+bool script_load(script *s) {
+    s->seed = scene_rng(s->scene, CORE_RNG_SIM)->seed;
+    script_mods_start(s);
+    tell_mods(s, BIND_LOAD, "load", true, NULL);
+    bool good = run_load(s);
+    tell_mods(s, BIND_LOAD, "load", false, NULL);
+    return good;
+}
+
 void script_fixed(script *s, float dt) {
     if (s->awake) {
         lua_rawgeti(s->L, LUA_REGISTRYINDEX, s->tick_ref);
@@ -108,24 +136,35 @@ void script_fixed(script *s, float dt) {
             lua_pop(s->L, 1);
         }
     }
+    double length = (double)dt;
+    uint32_t was = s->phase;
+    s->phase = BIND_FIXED;
+    script_mods_tick(s);
+    s->phase = was;
+    tell_mods(s, BIND_FIXED, "fixed", true, &length);
     if (push_callback(s, "fixed", BIND_FIXED)) {
-        lua_pushnumber(s->L, (double)dt);
+        lua_pushnumber(s->L, length);
         call_callback(s, BIND_FIXED, 1);
     }
+    tell_mods(s, BIND_FIXED, "fixed", false, &length);
     s->time += (double)dt;
 }
 
 void script_update(script *s, double dt) {
+    tell_mods(s, BIND_UPDATE, "update", true, &dt);
     if (push_callback(s, "update", BIND_UPDATE)) {
         lua_pushnumber(s->L, dt);
         call_callback(s, BIND_UPDATE, 1);
     }
+    tell_mods(s, BIND_UPDATE, "update", false, &dt);
 }
 
 void script_draw(script *s) {
+    tell_mods(s, BIND_DRAW, "draw", true, NULL);
     if (push_callback(s, "draw", BIND_DRAW)) {
         call_callback(s, BIND_DRAW, 0);
     }
+    tell_mods(s, BIND_DRAW, "draw", false, NULL);
     if (s->stopped && !s->headless) {
         lua_rawgeti(s->L, LUA_REGISTRYINDEX, s->error_screen_ref);
         lua_pushstring(s->L, s->last_error);
@@ -150,9 +189,11 @@ void script_event(script *s, const char *name, const char *text, const double *v
 }
 
 void script_quit(script *s) {
+    tell_mods(s, BIND_QUIT, "quit", true, NULL);
     if (push_callback(s, "quit", BIND_QUIT)) {
         call_callback(s, BIND_QUIT, 0);
     }
+    tell_mods(s, BIND_QUIT, "quit", false, NULL);
 }
 
 // ---- what the app asks ----

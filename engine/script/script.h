@@ -61,6 +61,10 @@ typedef struct script_conf {
     char setting_value[32][64];
 } script_conf;
 
+// Adds a mod from its folder (mod.lua, main.lua, assets/): before script_load, which orders them
+// and runs their code. False + core_fail: it is left out and the game goes on.
+bool script_add_mod(script *s, const char *real_dir);
+
 // Runs the file at top level (defining callbacks), then corsac.conf(t). False: error already shown.
 bool script_load_file(script *s, const char *virtual_path, script_conf *conf);
 bool script_load(script *s);              // corsac.load(args)

@@ -7,6 +7,7 @@
 #include "script/files.h"
 #include "script/internal.h"
 #include "script/libc.h"
+#include "script/mod.h"
 #include "script/order.h"
 
 #include <lualib.h>
@@ -61,6 +62,9 @@ static int engine_simulating(lua_State *L) {
 }
 
 core_rng *script_stream(script *s) {
+    if (s->as_mod) {
+        return script_mod_stream(s->as_mod);
+    }
     bool view = (s->phase & BIND_VIEW) != 0;
     return scene_rng(s->scene, view ? CORE_RNG_VIEW : CORE_RNG_SIM);
 }
@@ -163,6 +167,28 @@ static int engine_near(lua_State *L) {
 
 static int engine_rawmeta(lua_State *L) { return lua_getmetatable(L, 1); }
 
+// modEvent(before, name, ...): tells the mods of an event of the game.
+static int engine_mod_event(lua_State *L) {
+    script *s = self(L);
+    if (s->mod_count == 0) {
+        return 0;
+    }
+    int last = lua_gettop(L);
+    script_pack *args = lua_newuserdata(L, sizeof *args);
+    *args = (script_pack){0};
+    for (int i = 3; i <= last; i++) {
+        script_pack_value(s, L, i, args);
+    }
+    script_mods_event(s, lua_tostring(L, 2), lua_toboolean(L, 1), args);
+    script_pack_release(args);
+    return 0;
+}
+
+static int engine_has_mods(lua_State *L) {
+    lua_pushboolean(L, self(L)->mod_count > 0);
+    return 1;
+}
+
 static int engine_print(lua_State *L) {
     core_log(CORE_LOG_INFO, "%s", luaL_checkstring(L, 1));
     return 0;
@@ -217,18 +243,13 @@ static int engine_find_module(lua_State *L) {
     return 2;
 }
 
-static const luaL_Reg engine_functions[] = {{"keys", script_order_keys},
+// What mods have too.
+static const luaL_Reg shared_functions[] = {{"keys", script_order_keys},
                                             {"next", script_order_next},
                                             {"simulating", engine_simulating},
                                             {"random", engine_random},
-                                            {"reseed", engine_reseed},
                                             {"print", engine_print},
                                             {"describe", engine_describe},
-                                            {"loadFile", engine_load_file},
-                                            {"findModule", engine_find_module},
-                                            {"bodyAt", engine_body_at},
-                                            {"callbackCount", engine_callback_count},
-                                            {"fastMethods", script_fast_methods},
                                             {"dt", engine_dt},
                                             {"wake", engine_wake},
                                             {"setTask", engine_set_task},
@@ -237,17 +258,40 @@ static const luaL_Reg engine_functions[] = {{"keys", script_order_keys},
                                             {"protect", engine_protect},
                                             {"near", engine_near},
                                             {"rawmeta", engine_rawmeta},
+                                            {NULL, NULL}};
+
+static const luaL_Reg engine_functions[] = {{"reseed", engine_reseed},
+                                            {"loadFile", engine_load_file},
+                                            {"findModule", engine_find_module},
+                                            {"modEvent", engine_mod_event},
+                                            {"hasMods", engine_has_mods},
+                                            {"bodyAt", engine_body_at},
+                                            {"callbackCount", engine_callback_count},
+                                            {"fastMethods", script_fast_methods},
                                             {"saveWrite", script_save_write},
                                             {"saveRead", script_save_read},
                                             {NULL, NULL}};
 
-static void push_engine(script *s, lua_State *L) {
-    lua_newtable(L);
-    for (const luaL_Reg *fn = engine_functions; fn->name; fn++) {
+static void push_functions(script *s, lua_State *L, const luaL_Reg *functions) {
+    for (const luaL_Reg *fn = functions; fn->name; fn++) {
         lua_pushlightuserdata(L, s);
         lua_pushcclosure(L, fn->func, 1);
         lua_setfield(L, -2, fn->name);
     }
+}
+
+void script_push_engine(script *s, lua_State *L) {
+    lua_newtable(L);
+    push_functions(s, L, shared_functions);
+    lua_newtable(L); // Lua halves of bindings, by full name
+    lua_pushvalue(L, -1);
+    lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
+    lua_setfield(L, -2, "lua");
+}
+
+static void push_engine(script *s, lua_State *L) {
+    script_push_engine(s, L);
+    push_functions(s, L, engine_functions);
     script_fast *fast = lua_newuserdata(L, sizeof *fast);
     *fast = script_fast_table(s);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.fast"); // keeps it alive
@@ -255,14 +299,9 @@ static void push_engine(script *s, lua_State *L) {
     lua_setfield(L, -2, "fast");
     lua_pushlightuserdata(L, (void *)(uintptr_t)&bind_body_type);
     lua_setfield(L, -2, "bodyType");
-    lua_newtable(L); // Lua halves of bindings, by full name
-    lua_pushvalue(L, -1);
-    lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
-    lua_setfield(L, -2, "lua");
 }
 
-// Runs scripts/corsac/NAME.lua with the engine table as argument.
-static bool run_part(script *s, lua_State *L, const char *name) {
+bool script_run_part(script *s, lua_State *L, const char *name) {
     char path[64];
     snprintf(path, sizeof path, "corsac/%s.lua", name);
     lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
@@ -287,11 +326,11 @@ lua_State *script_state_create(script *s) {
     luaL_openlibs(L);
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
-    static const char *const parts[] = {"base",   "native",     "columns", "tasks",
-                                        "events", "containers", "prefab",  "save"};
+    static const char *const parts[] = {"base",       "native", "columns", "tasks", "events",
+                                        "containers", "prefab", "save",    "mods"};
     bool good = true;
     for (size_t i = 0; good && i < CORE_COUNT_OF(parts); i++) {
-        good = run_part(s, L, parts[i]);
+        good = script_run_part(s, L, parts[i]);
     }
     if (good) {
         bind_install(s, L, false);
@@ -299,10 +338,14 @@ lua_State *script_state_create(script *s) {
         s->corsac_ref = luaL_ref(L, LUA_REGISTRYINDEX);
         lua_pushnil(L);
         lua_setfield(L, LUA_REGISTRYINDEX, "corsac.lua");
-        good = run_part(s, L, "fast") && run_part(s, L, "boot");
+        good = script_run_part(s, L, "fast") && script_run_part(s, L, "boot");
         lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
         lua_getfield(L, -1, "errorScreen");
         s->error_screen_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+        s->service = lua_newthread(L);
+        lua_setfield(L, LUA_REGISTRYINDEX, "corsac.service");
+        lua_getfield(L, -1, "serve");
+        lua_setfield(L, LUA_REGISTRYINDEX, "corsac.serve");
         lua_getfield(L, -1, "tick");
         s->tick_ref = luaL_ref(L, LUA_REGISTRYINDEX);
         lua_pop(L, 1);

@@ -35,7 +35,7 @@ local function sweep(name, list)
 end
 
 -- A listener that returns false is not called again.
-lua["corsac.emit"] = function(name, ...)
+local function emit(name, ...)
     local list = listeners[name]
     if not list then return 0 end
     if depth == 32 then error('corsac.emit("' .. name .. '"): events that emit events, 32 deep', 2) end
@@ -59,5 +59,14 @@ lua["corsac.emit"] = function(name, ...)
     depth = depth - 1
     if gone and depth == 0 then sweep(name, list) end
     if not ok then error(why, 0) end
+    return heard
+end
+
+-- Mods hear plain data only, so they are asked only when there are any.
+lua["corsac.emit"] = function(name, ...)
+    if not engine.hasMods or not engine.hasMods() then return emit(name, ...) end
+    engine.modEvent(true, name, ...)
+    local heard = emit(name, ...)
+    engine.modEvent(false, name, ...)
     return heard
 end

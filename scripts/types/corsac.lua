@@ -910,6 +910,69 @@ function corsac.save.write(name, data, version) end
 ---@return table? data
 function corsac.save.read(name, options) end
 
+---What only mods have.
+corsac.mod = {}
+
+---In mods: calls a function before an event of the game.
+---@param name string load, fixed, update, draw, quit, or an event of the game
+---@param fn function called with plain data
+function corsac.mod.before(name, fn) end
+
+---In mods: calls a function after an event of the game.
+---@param name string load, fixed, update, draw, quit, or an event of the game
+---@param fn function called with plain data
+function corsac.mod.after(name, fn) end
+
+---In mods: gives a function the value of a filter; what it returns replaces it.
+---@param name string load, fixed, update, draw, quit, or an event of the game
+---@param fn function called with plain data
+function corsac.mod.filter(name, fn) end
+
+---In mods: calls a function of a service that the game exports.
+---@param service string "service.function"
+---@param ... any plain data and objects
+---@return any ...
+function corsac.mod.call(service, ...) end
+
+---In mods: merges a table into data that the game declares with corsac.mods.data.
+---@param name string of the data
+---@param changes table fields to add or replace
+function corsac.mod.patch(name, changes) end
+
+---In mods: a copy of the game's data of that name, or nil.
+---@param name string of the data
+---@return table? data
+function corsac.mod.getData(name) end
+
+---What a game offers to mods.
+corsac.mods = {}
+
+---The mods in order: name, version, enabled, errors, calls, instructions, bytes.
+---@return table[] mods
+function corsac.mods.list() end
+
+---Switches a mod on or off from now on.
+---@param name string of the mod
+---@param on boolean
+function corsac.mods.setEnabled(name, on) end
+
+---Gives a value to the mods' filters of that name, in order, and returns what is left.
+---@param name string of the filter
+---@param value any plain data or an object
+---@return any value
+function corsac.mods.filter(name, value) end
+
+---Offers functions to mods under a name; they get and give plain data and objects.
+---@param name string of the service
+---@param functions table name = function
+function corsac.mods.export(name, functions) end
+
+---Declares data that mods may patch, and returns it with their patches.
+---@param name string of the data
+---@param data table plain data
+---@return table data
+function corsac.mods.data(name, data) end
+
 ---Entities: places in the world that carry bodies and meshes.
 corsac.scene = {}
 

@@ -1,0 +1,65 @@
+// Mods: folders of untrusted Lua. Each has a state of its own behind the guard; it hears named
+// events, calls services of the game, patches the game's data. See docs/guide/mods.md.
+#ifndef SCRIPT_MOD_H
+#define SCRIPT_MOD_H
+
+#include "core/rng.h"
+#include "script/guard.h"
+#include "script/pack.h"
+
+enum { MOD_STRIKES = 3, MOD_LOG_LINES = 200, MOD_JOURNAL_MAX = 4096, MOD_ARGS_BYTES = 128 };
+
+// A change of the simulation that waits for the end of the mod's call.
+typedef struct mod_change {
+    const bind_fn *fn;
+    const bind_type *type; // NULL: no object
+    core_handle self;
+    _Alignas(16) unsigned char args[MOD_ARGS_BYTES];
+} mod_change;
+
+typedef struct mod_made { // an object that the running call made
+    const bind_type *type;
+    core_handle handle;
+} mod_made;
+
+typedef struct script_mod {
+    char name[48], version[24], dir[512];
+    char dependency[8][48];
+    int dependency_count;
+    double order;
+    int index;
+    script *game, *view; // view: the script of the mod's own state
+    script_guard guard;
+    core_rng rng;
+    bool started, enabled;
+    int strikes, errors, log_lines;
+    uint64_t instructions, calls; // all calls so far
+    mod_change *journal;
+    int journal_count;
+    mod_made *made;
+    int made_count, made_capacity;
+    uint32_t owned[32]; // objects made so far, by class
+} script_mod;
+
+core_rng *script_mod_stream(script_mod *m);
+void script_mods_destroy(script *game);
+// Orders the mods that were added and runs their main.lua.
+void script_mods_start(script *game);
+// Calls what mods hooked before or after an event, with packed arguments (NULL: none). results
+// (NULL: dropped) gets the values of each call that ended well.
+void script_mods_event(script *game, const char *name, bool before, const script_pack *args);
+// Passes the packed value through the mods' filters of that name; value is replaced.
+void script_mods_filter(script *game, const char *name, script_pack *value);
+void script_mods_tick(script *game); // tasks of mods
+
+// Gate of every binding that a mod calls: charges it, checks quotas. Raises Lua errors.
+void script_mod_charge(script *s, lua_State *L, const bind_fn *fn);
+// True when the call was put off to the end of the mod's call.
+bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_type *type,
+                      core_handle self, const void *args, size_t size);
+// Notes what a function made (top of the stack).
+void script_mod_made(script *s, lua_State *L, const bind_fn *fn);
+// An error text of a mod that did not end its call (top of the stack, popped).
+void script_mod_report(script *s, lua_State *L);
+
+#endif
