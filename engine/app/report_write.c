@@ -177,7 +177,9 @@ static void row(FILE *out, const char *name, double value, const char *unit) {
     if (isnan(value)) {
         fprintf(out, "  %-24s %14s\n", name, "-");
     } else {
-        fprintf(out, "  %-24s %14.6g %s\n", name, value, unit);
+        bool whole = value == floor(value) && fabs(value) < 1e15;
+        fprintf(out, whole ? "  %-24s %14.0f%s%s\n" : "  %-24s %14.6g%s%s\n", name, value,
+                unit[0] ? " " : "", unit);
     }
 }
 
