@@ -60,7 +60,7 @@ $(OUT)/corsac: $(APP_OBJ) $(OUT)/libcorsac.a $(OBJ)/link
 
 # The converter: a program and a library that the engine loads at run time. Both are made of the
 # converter and the two rooms it needs, position-independent and with only its one function visible.
-CONVERT_SRC := $(filter-out tools/convert/main.c,$(wildcard tools/convert/*.c)) $(wildcard engine/asset/*.c engine/core/*.c)
+CONVERT_SRC := $(filter-out tools/convert/main.c,$(wildcard tools/convert/*.c)) engine/anim/pack.c engine/anim/pack_encode.c $(wildcard engine/asset/*.c engine/core/*.c)
 CONVERT_OBJ := $(CONVERT_SRC:%.c=$(OBJ)/pic/%.o)
 CONVERT_MAIN := $(OBJ)/pic/tools/convert/main.o
 CONVERT_LIBS := -Wl,--as-needed $(ASSIMP_LIBS) -lcjson -lstb -lm -lpthread

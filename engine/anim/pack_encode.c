@@ -410,9 +410,10 @@ static bool choose_form(encoder *e, uint32_t b, uint32_t kind) {
         return true;
     }
     if (kind == ANIM_PACK_R && !choose_base(e, b, t)) {
-        return core_fail("clip %s: bone %s turns more than 150 degrees from its mean: keep the raw "
-                         "clip",
-                         e->clip->name, e->skeleton->name[b]);
+        return core_fail_quiet(
+            "clip %s: bone %s turns more than 150 degrees from its mean: keep the raw "
+            "clip",
+            e->clip->name, e->skeleton->name[b]);
     }
     uint32_t n = e->rate_intervals;
     const form forms[] = {{1, at_least_one(n / 8)},
@@ -431,8 +432,8 @@ static bool choose_form(encoder *e, uint32_t b, uint32_t kind) {
             return true;
         }
     }
-    return core_fail("clip %s: bone %s cannot be kept within %g m", e->clip->name,
-                     e->skeleton->name[b], e->bound);
+    return core_fail_quiet("clip %s: bone %s cannot be kept within %g m", e->clip->name,
+                           e->skeleton->name[b], e->bound);
 }
 
 // ---- writing ----
@@ -719,7 +720,7 @@ void *anim_pack_encode(const core_skeleton_data *skeleton, const core_clip_data 
         e.share *= 0.95 * (double)bound / fmax(error, 0.2 * (double)bound);
     }
     if (!best.data && chosen) {
-        core_fail("clip %s: cannot be kept within %g m", clip->name, bound);
+        core_fail_quiet("clip %s: cannot be kept within %g m", clip->name, bound);
     }
     release(&e);
     *size = best.size;

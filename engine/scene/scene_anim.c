@@ -1,4 +1,6 @@
 // The animation room in a scene: instances on entities, root motion, palettes to drawn meshes.
+#include <string.h>
+
 #include "scene/scene_internal.h"
 
 anim_world *scene_anim(scene *s) {
@@ -7,6 +9,11 @@ anim_world *scene_anim(scene *s) {
         desc.jobs = s->jobs;
         desc.metrics = s->metrics;
         s->anim = anim_world_create(&desc);
+        for (uint32_t i = 0; s->anim && i < s->setting_count; i++) {
+            if (strcmp(s->setting[i].room, "anim") == 0) {
+                anim_world_set(s->anim, s->setting[i].name, s->setting[i].value);
+            }
+        }
         scene_settings_apply(s, "anim", s->anim);
     }
     return s->anim;

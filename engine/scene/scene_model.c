@@ -65,14 +65,22 @@ static bool load_skeleton(scene *s, const char *path, model_parts *p) {
 }
 
 static bool load_clip(scene *s, const asset_model_clip *from, model_parts *p, uint32_t i) {
-    core_clip_data *data = asset_clip_load(s->vfs, from->path);
-    if (!data) {
+    size_t size = 0;
+    void *bytes = core_vfs_read(s->vfs, from->path, &size);
+    if (!bytes) {
         return false;
     }
+    bool packed = size >= 4 && memcmp(bytes, "CAN2", 4) == 0;
+    core_clip_data *data = packed ? NULL : asset_clip_decode(bytes, size, from->path);
     anim_clip_desc desc = anim_clip_desc_default();
     desc.data = data;
+    desc.packed = packed ? bytes : NULL;
+    desc.packed_size = size;
     desc.skeleton = p->skeleton;
-    p->clip[i] = anim_clip_create(scene_anim(s), &desc);
+    if (data || packed) {
+        p->clip[i] = anim_clip_create(scene_anim(s), &desc);
+    }
+    core_free(bytes);
     memcpy(p->clip_name[i], from->name, CORE_NAME_MAX);
     core_free(data);
     return !core_handle_is_null(p->clip[i]);

@@ -86,6 +86,17 @@ class Files(Converted):
         self.assertIn("3 clips", result.stdout)
         self.assertIn("dry run", result.stdout)
 
+    def test_compressed_clips_play(self):
+        self.convert("fox.glb", "--compress", "0.05")  # the fox is in cm
+        notes = [n for n in self.report("fox")["changed"] if "compressed" in n]
+        self.assertEqual(len(notes), 3)
+        with open(os.path.join(self.out, "fox_Walk.canim"), "rb") as f:
+            self.assertEqual(f.read(4), b"CAN2")
+        run = subprocess.run([CORSAC, "run", os.path.join(self.out, "fox.lua"), "--headless",
+                              "--steps", "400", "--metrics", "-"], capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertLess(json.loads(run.stdout)["accuracy"]["anim_error_max_m_peak"], 1e-3)
+
     def test_usage(self):
         self.assertEqual(convert().returncode, 2)
         self.assertEqual(convert("a.glb", self.out, "--scale", "-1").returncode, 2)

@@ -2,6 +2,8 @@
 // own times and joined at the union of them; times are never rescaled.
 #include "convert.h"
 
+#include "anim/pack.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -392,6 +394,28 @@ static void end_of_clip(cv_model *m, const cv_clip *clip, core_clip_data *data) 
     }
 }
 
+// Compressed where that was asked for and the bound can be kept, else raw.
+static void *encode(cv_model *m, const core_clip_data *data, size_t *size) {
+    void *bytes = NULL;
+    if (m->options->compress > 0) {
+        core_skeleton_data *skeleton = cv_skeleton_data(m);
+        bytes = anim_pack_encode(skeleton, data, (float)m->options->compress, 0.1f, 0, size);
+        core_free(skeleton);
+        anim_pack *pack = bytes ? anim_pack_decode(bytes, *size, data->name) : NULL;
+        if (pack) {
+            cv_note_add(m, "changed",
+                        "clip \"%s\": compressed to %zu bytes, %.0f a bone and second, at most "
+                        "%.3g mm off",
+                        data->name, *size, (double)*size / m->bone_count / (double)data->duration,
+                        (double)pack->error * 1000);
+        } else {
+            cv_note_add(m, "warning", "%s: kept raw", core_last_error());
+        }
+        core_free(pack);
+    }
+    return bytes ? bytes : asset_clip_encode(data, size);
+}
+
 static bool write_clip(cv_model *m, const cv_clip *clip) {
     core_clip_track *track = core_alloc((m->bone_count + 1) * sizeof *track);
     core_clip_data data = {
@@ -412,7 +436,7 @@ static bool write_clip(cv_model *m, const cv_clip *clip) {
     memcpy(out->name, data.name, sizeof out->name);
     snprintf(out->path, sizeof out->path, "%.40s_%.80s.canim", m->name, data.name);
     size_t size = 0;
-    void *bytes = asset_clip_encode(&data, &size);
+    void *bytes = encode(m, &data, &size);
     bool good = bytes ? cv_write(m, out->path, bytes, size) : cv_fail(m, "%s", core_last_error());
     m->out.clip_count++;
     for (uint32_t b = 0; b < m->bone_count; b++) {

@@ -14,6 +14,7 @@ typedef struct convert_options {
     const char *in, *out_dir;
     double scale;            // factor on lengths; 0: by the file's own unit
     double ticks_per_second; // where the file says 0; default 25
+    double compress;         // m at the skin shell: clips become "CAN2"; 0: raw keys
     bool dry_run;            // report only
     bool quiet;              // no report on stdout, no progress
 } convert_options;
@@ -116,6 +117,8 @@ int cv_bone_of_node(const cv_model *m, const struct aiNode *node); // -1
 int cv_bone_above(const cv_model *m, const struct aiNode *node);   // itself or nearest ancestor
 cv_mat cv_node_global(const cv_model *m, const struct aiNode *node);
 bool cv_skeleton_write(cv_model *m);
+// The bones as plain data: one block, core_free it.
+core_skeleton_data *cv_skeleton_data(const cv_model *m);
 bool cv_clips_read(cv_model *m); // curves by assimp, or by the glTF itself
 bool cv_clips_write(cv_model *m);
 // Replaces what assimp read: it drops STEP and CUBICSPLINE. False when the file is no glTF or uses

@@ -3,6 +3,8 @@
 // node they belong to.
 #include "convert.h"
 
+#include "asset/bytes.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -175,17 +177,20 @@ bool cv_skeleton_make(cv_model *m) {
            cv_fail(m, "%u bones, at most %u", m->bone_count, ASSET_MAX_BONES);
 }
 
-bool cv_skeleton_write(cv_model *m) {
-    uint32_t n = m->bone_count;
-    if (n == 0) {
-        return true;
-    }
-    char(*name)[CORE_NAME_MAX] = core_alloc(n * sizeof *name);
-    int32_t *parent = core_alloc(n * sizeof *parent);
-    core_vec3 *t = core_alloc(n * sizeof *t), *s = core_alloc(n * sizeof *s);
-    core_quat *r = core_alloc(n * sizeof *r);
-    core_mat4 *inverse = core_alloc(n * sizeof *inverse);
-    for (uint32_t b = 0; b < n; b++) {
+core_skeleton_data *cv_skeleton_data(const cv_model *m) {
+    size_t n = m->bone_count;
+    asset_block block =
+        asset_block_make(asset_round(sizeof(core_skeleton_data)) + asset_round(n * CORE_NAME_MAX) +
+                         asset_round(n * 4) + 2 * asset_round(n * sizeof(core_vec3)) +
+                         asset_round(n * sizeof(core_quat)) + asset_round(n * sizeof(core_mat4)));
+    core_skeleton_data *data = asset_block_take(&block, sizeof *data);
+    char(*name)[CORE_NAME_MAX] = asset_block_take(&block, n * sizeof *name);
+    int32_t *parent = asset_block_take(&block, n * sizeof *parent);
+    core_vec3 *t = asset_block_take(&block, n * sizeof *t);
+    core_vec3 *s = asset_block_take(&block, n * sizeof *s);
+    core_quat *r = asset_block_take(&block, n * sizeof *r);
+    core_mat4 *inverse = asset_block_take(&block, n * sizeof *inverse);
+    for (size_t b = 0; b < n; b++) {
         const cv_bone *bone = &m->bone[b];
         const cv_trs *p = &bone->local;
         memcpy(name[b], bone->name, CORE_NAME_MAX);
@@ -197,18 +202,22 @@ bool cv_skeleton_write(cv_model *m) {
             inverse[b].m[i] = (float)bone->inverse_bind.m[i % 4][i / 4];
         }
     }
-    core_skeleton_data data = {n, (const char(*)[CORE_NAME_MAX])name, parent, t, r, s, inverse};
+    *data = (core_skeleton_data){(uint32_t)n, (const char(*)[CORE_NAME_MAX])name, parent, t, r, s,
+                                 inverse};
+    return data;
+}
+
+bool cv_skeleton_write(cv_model *m) {
+    if (m->bone_count == 0) {
+        return true;
+    }
+    core_skeleton_data *data = cv_skeleton_data(m);
     size_t size = 0;
-    void *bytes = asset_skeleton_encode(&data, &size);
+    void *bytes = asset_skeleton_encode(data, &size);
     snprintf(m->out.skeleton, sizeof m->out.skeleton, "%s.cskel", m->name);
     bool good =
         bytes ? cv_write(m, m->out.skeleton, bytes, size) : cv_fail(m, "%s", core_last_error());
     core_free(bytes);
-    core_free(name);
-    core_free(parent);
-    core_free(t);
-    core_free(s);
-    core_free(r);
-    core_free(inverse);
+    core_free(data);
     return good;
 }
