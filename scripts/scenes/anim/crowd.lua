@@ -12,12 +12,15 @@ local function make_machine(fox)
             { name = "jump", clip = fox:getClip("jump"), loop = "once" },
         },
         transitions = {
-            { from = "idle", to = "walk", parameter = "speed", value = 0.2, length = 0.25, fade = "smooth" },
+            { from = "idle", to = "walk", parameter = "speed", value = 0.2, length = 0.25,
+                fade = "smooth" },
             { from = "walk", to = "run", parameter = "speed", value = 1.2, length = 0.2, sync = true },
             { from = "run", to = "jump", event = "jump", length = 0.1 },
             { from = "jump", to = "run", length = 0.15, fade = "smooth" },
-            { from = "run", to = "walk", parameter = "speed", compare = "<", value = 1.2, length = 0.2, sync = true },
-            { from = "walk", to = "idle", parameter = "speed", compare = "<", value = 0.2, length = 0.25, fade = "smooth" },
+            { from = "run", to = "walk", parameter = "speed", compare = "<", value = 1.2, length = 0.2,
+                sync = true },
+            { from = "walk", to = "idle", parameter = "speed", compare = "<", value = 0.2,
+                length = 0.25, fade = "smooth" },
         },
     }
 end
