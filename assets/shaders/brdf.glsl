@@ -10,7 +10,9 @@ layout(binding = GFX_TEX_DFG) uniform sampler2D u_dfg;
 struct Surface {
     vec3 position; // world
     vec3 normal;     // unit, towards the viewer; from the normal map where there is one
+#ifdef USE_SHADOWS
     vec3 flatNormal; // unit, of the geometry
+#endif
     vec3 view;     // unit, towards the viewer
     float noV;
     float roughness; // perceptual

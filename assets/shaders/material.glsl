@@ -1,7 +1,6 @@
 // Material of a fragment: factors times maps, with the meaning of glTF 2.0.
 #include "common.glsl"
 
-in vec2 v_uv;
 in vec4 v_color;
 flat in uint v_material;
 
@@ -9,6 +8,7 @@ layout(std430, binding = GFX_SSBO_MATERIALS) readonly buffer MaterialBlock {
     gfx_material_block materials[];
 };
 #ifdef USE_TEXTURES
+in vec2 v_uv;
 layout(binding = GFX_TEX_BASE_COLOR) uniform sampler2D u_baseColor;
 layout(binding = GFX_TEX_NORMAL) uniform sampler2D u_normal;
 layout(binding = GFX_TEX_METALLIC_ROUGHNESS) uniform sampler2D u_metallicRoughness;

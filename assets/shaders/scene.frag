@@ -52,8 +52,10 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
     s.position = v_world;
     s.view = viewDirection(v_world);
     s.normal = shadingNormal(m);
+#ifdef USE_SHADOWS
     s.flatNormal = normalize(cross(dFdx(v_world), dFdy(v_world)));
     s.flatNormal *= dot(s.flatNormal, s.view) < 0.0 ? -1.0 : 1.0;
+#endif
     s.noV = clamp(dot(s.normal, s.view), 1e-4, 1.0);
     setMaterial(s, base.rgb, metallic, roughness);
     return s;

@@ -30,9 +30,11 @@ invariant gl_Position;
 
 #if !defined(DEPTH_ONLY) || defined(USE_ALPHA_MASK)
 #define WITH_MATERIAL
-out vec2 v_uv;
 out vec4 v_color;
 flat out uint v_material;
+#ifdef USE_TEXTURES
+out vec2 v_uv;
+#endif
 #endif
 #ifndef DEPTH_ONLY
 out vec3 v_world;
@@ -75,7 +77,9 @@ void main() {
     vec3 p = position * world;
     gl_Position = u_view.view_proj * vec4(p, 1.0);
 #ifdef WITH_MATERIAL
+#ifdef USE_TEXTURES
     v_uv = a_uv;
+#endif
     v_color = a_color * instance.color;
     v_material = instance.index.x;
 #endif
