@@ -19,7 +19,8 @@ typedef struct bind_body_options {
     int type;
     core_vec3 velocity, angular_velocity;
     float linear_damping, angular_damping, gravity_scale;
-    const char *layer; // NULL: "default"
+    const char *layer;              // NULL: "default"
+    int on_contact, on_contact_end; // stack indices, 0: none
 } bind_body_options;
 
 extern const bind_arg bind_body_fields[];
@@ -30,6 +31,8 @@ enum { BIND_SHAPES_MAX = 256 };
 uint32_t bind_body_read(script *s, lua_State *L, const char *owner,
                         const bind_body_options *options, phys_body_desc *out,
                         phys_shape_desc *shapes);
+// Keeps the functions among the options for the body that was made.
+void bind_body_callbacks(script *s, lua_State *L, const bind_body_options *options, phys_body body);
 // Size that a built-in unit mesh takes to look like the body's first shape.
 core_vec3 bind_body_mesh_scale(const bind_body_options *options);
 

@@ -1,6 +1,7 @@
 // corsac.phys: bodies.
 #include "script/bind_body.h"
 #include "script/bind_region.h"
+#include "script/events.h"
 #include "script/internal.h"
 
 #include <stdio.h>
@@ -120,9 +121,25 @@ static const bind_arg shape_fields[] = {
          .optional = true},                                                                        \
         {"gravityScale",      BIND_FLOAT,       BIND_AT(bind_body_options, gravity_scale),         \
          "factor on gravity", .optional = true, .def = 1},                                         \
+        {"layer",                                                                                  \
+         BIND_STRING,                                                                              \
+         BIND_AT(bind_body_options, layer),                                                        \
+         "name of its collision layer",                                                            \
+         .optional = true,                                                                         \
+         .def_text = "default"},                                                                   \
+        {"onContact",                                                                              \
+         BIND_FUNCTION,                                                                            \
+         BIND_AT(bind_body_options, on_contact),                                                   \
+         "called when it begins to touch: itself, the other body, speed of approach (m/s), "       \
+         "normal "                                                                                 \
+         "x, y, z towards the other",                                                              \
+         .optional = true,                                                                         \
+         .def_text = "none"},                                                                      \
     {                                                                                              \
-        "layer", BIND_STRING, BIND_AT(bind_body_options, layer), "name of its collision layer",    \
-            .optional = true, .def_text = "default"                                                \
+        "onContactEnd", BIND_FUNCTION, BIND_AT(bind_body_options, on_contact_end),                 \
+            "called when it touches no longer: itself, the other body (nil when it was "           \
+            "destroyed)",                                                                          \
+            .optional = true, .def_text = "none"                                                   \
     }
 
 const bind_arg bind_body_fields[] = {BODY_FIELDS, {0}};
@@ -180,6 +197,7 @@ uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_b
     out->linear_damping = o->linear_damping;
     out->angular_damping = o->angular_damping;
     out->gravity_scale = o->gravity_scale;
+    out->contact_events = o->on_contact || o->on_contact_end;
     out->layer = o->layer ? bind_layer(s, L, o->layer) : 0;
     if (o->shapes.count == 0) {
         shapes[0] = read_shape(L, owner, &o->shape);
@@ -193,6 +211,13 @@ uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_b
         shapes[i] = read_shape(L, owner, &list[i]);
     }
     return o->shapes.count;
+}
+
+void bind_body_callbacks(script *s, lua_State *L, const bind_body_options *o, phys_body body) {
+    if (o->on_contact || o->on_contact_end) {
+        script_keep_callbacks(s, L, SCRIPT_ON_CONTACT, body,
+                              (const int[]){o->on_contact, o->on_contact_end, 0});
+    }
 }
 
 core_vec3 bind_body_mesh_scale(const bind_body_options *options) {
@@ -439,6 +464,7 @@ static int new_body(script *s, lua_State *L, void *args) {
     if (core_handle_is_null(body)) {
         bind_fail(L);
     }
+    bind_body_callbacks(s, L, &a->body, body);
     bind_push(s, L, &bind_body_type, body);
     return 1;
 }

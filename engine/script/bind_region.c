@@ -1,6 +1,7 @@
-// corsac.phys: layers, triggers, force fields; the callbacks of triggers.
+// corsac.phys: layers, triggers, force fields.
 #include "script/bind_region.h"
 #include "script/bind_body.h"
+#include "script/events.h"
 #include "script/internal.h"
 
 static int done(lua_State *L, bool good) {
@@ -65,41 +66,6 @@ typedef struct trigger_call {
     trigger_options options;
 } trigger_call;
 
-// Registry table: handle's bits -> {on_enter, on_stay, on_exit}; `gone` lists destroyed triggers,
-// whose bodies still get their exit.
-static const char callbacks_key, gone_key;
-
-static void push_table(lua_State *L, const char *key) {
-    lua_pushlightuserdata(L, (void *)(uintptr_t)key);
-    lua_rawget(L, LUA_REGISTRYINDEX);
-    if (lua_isnil(L, -1)) {
-        lua_pop(L, 1);
-        lua_newtable(L);
-        lua_pushlightuserdata(L, (void *)(uintptr_t)key);
-        lua_pushvalue(L, -2);
-        lua_rawset(L, LUA_REGISTRYINDEX);
-    }
-}
-
-static void push_bits(lua_State *L, core_handle h) {
-    lua_pushnumber(L, (double)h.index + (double)h.generation * 4294967296.0);
-}
-
-static void keep_callbacks(lua_State *L, phys_trigger trigger, const trigger_options *o) {
-    const int functions[] = {o->on_enter, o->on_stay, o->on_exit};
-    push_table(L, &callbacks_key);
-    push_bits(L, trigger);
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; i++) {
-        if (functions[i]) {
-            lua_pushvalue(L, functions[i]);
-            lua_rawseti(L, -2, i + 1);
-        }
-    }
-    lua_rawset(L, -3);
-    lua_pop(L, 1);
-}
-
 static int new_trigger(script *s, lua_State *L, void *args) {
     const trigger_options *o = &((trigger_call *)args)->options;
     phys_trigger_desc desc = phys_trigger_desc_default(region_types[o->region.shape]);
@@ -112,7 +78,8 @@ static int new_trigger(script *s, lua_State *L, void *args) {
     if (core_handle_is_null(trigger)) {
         bind_fail(L);
     }
-    keep_callbacks(L, trigger, o);
+    script_keep_callbacks(s, L, SCRIPT_ON_TRIGGER, trigger,
+                          (const int[]){o->on_enter, o->on_stay, o->on_exit});
     bind_push(s, L, &bind_trigger_type, trigger);
     return 1;
 }
@@ -134,73 +101,8 @@ static int trigger_set_position(script *s, lua_State *L, void *args) {
 
 static int trigger_destroy(script *s, lua_State *L, void *args) {
     core_handle self = *(core_handle *)args;
-    push_table(L, &gone_key);
-    push_bits(L, self);
-    lua_rawseti(L, -2, (int)lua_objlen(L, -2) + 1);
-    lua_pop(L, 1);
+    script_forget_trigger(L, self);
     return done(L, phys_trigger_destroy(scene_phys(s->scene), self));
-}
-
-static void push_body_or_nil(script *s, phys_body body) {
-    bool alive = phys_body_alive(scene_phys(s->scene), body);
-    bind_push(s, s->L, &bind_body_type, alive ? body : CORE_NULL_HANDLE);
-}
-
-// The functions of destroyed triggers go after the events of a step that followed.
-static void forget_gone(lua_State *L, int callbacks, int count) {
-    push_table(L, &gone_key);
-    int all = (int)lua_objlen(L, -1);
-    for (int i = 1; i <= all; i++) {
-        lua_rawgeti(L, -1, i);
-        if (i <= count) {
-            lua_pushnil(L);
-            lua_rawset(L, callbacks);
-        } else {
-            lua_rawseti(L, -2, i - count);
-        }
-    }
-    for (int i = all - count + 1; i <= all; i++) {
-        lua_pushnil(L);
-        lua_rawseti(L, -2, i);
-    }
-    lua_pop(L, 1);
-}
-
-void script_step_events(script *s) {
-    phys_world *world = scene_phys_if(s->scene);
-    uint32_t count = 0;
-    const phys_event *event = world ? phys_world_events(world, &count) : NULL;
-    if (s->stopped & BIND_STEP || !count) {
-        return;
-    }
-    lua_State *L = s->L;
-    push_table(L, &gone_key);
-    int gone = (int)lua_objlen(L, -1);
-    lua_pop(L, 1);
-    push_table(L, &callbacks_key);
-    int callbacks = lua_gettop(L);
-    for (uint32_t i = 0; i < count && event[i].kind <= PHYS_TRIGGER_EXIT; i++) {
-        push_bits(L, event[i].trigger);
-        lua_rawget(L, callbacks);
-        if (lua_istable(L, -1)) {
-            lua_rawgeti(L, -1, (int)event[i].kind + 1);
-        }
-        if (lua_isfunction(L, -1)) {
-            push_body_or_nil(s, event[i].a);
-            bool alive = phys_trigger_alive(world, event[i].trigger);
-            bind_push(s, L, &bind_trigger_type, alive ? event[i].trigger : CORE_NULL_HANDLE);
-            if (!script_call(s, BIND_STEP, 2, 0) && !s->keep_going) {
-                s->stopped |= BIND_STEP;
-                break;
-            }
-        }
-        lua_settop(L, callbacks);
-    }
-    lua_settop(L, callbacks);
-    if (gone) {
-        forget_gone(L, callbacks, gone);
-    }
-    lua_pop(L, 1);
 }
 
 // ---- fields ----

@@ -57,6 +57,9 @@ static int spawn(script *s, lua_State *L, void *args) {
     if (core_handle_is_null(e)) {
         bind_fail(L);
     }
+    if (o->has_body) {
+        bind_body_callbacks(s, L, &o->body, scene_entity_body(s->scene, e));
+    }
     bind_push(s, L, &bind_entity_type, e);
     return 1;
 }

@@ -47,7 +47,8 @@ struct script {
     const char *const *argv;
     int argc;
     int error_count;
-    uint64_t callback_count; // calls from C so far
+    uint64_t callback_count;    // calls from C so far
+    uint32_t contact_callbacks; // given to bodies so far
     char *last_error;
     uint32_t stopped;     // bind_phase bits of callbacks that an error has stopped
     char *run_data;       // JSON handed to the next scene by corsac.run

@@ -1007,6 +1007,8 @@ corsac.scene = {}
 ---@field angularDamping? number loss of angular velocity, 1/s
 ---@field gravityScale? number factor on gravity
 ---@field layer? string name of its collision layer
+---@field onContact? function called when it begins to touch: itself, the other body, speed of approach (m/s), normal x, y, z towards the other
+---@field onContactEnd? function called when it touches no longer: itself, the other body (nil when it was destroyed)
 
 ---@class corsac.scene.spawn.options
 ---@field position? number[] in its parent's frame, m
@@ -1096,6 +1098,8 @@ function corsac.phys.getGravity() end
 ---@field angularDamping? number loss of angular velocity, 1/s
 ---@field gravityScale? number factor on gravity
 ---@field layer? string name of its collision layer
+---@field onContact? function called when it begins to touch: itself, the other body, speed of approach (m/s), normal x, y, z towards the other
+---@field onContactEnd? function called when it touches no longer: itself, the other body (nil when it was destroyed)
 ---@field position? number[] origin, m
 ---@field rotation? number[]|corsac.AxisAngle
 
