@@ -117,13 +117,11 @@ static void step(app_run *r) {
     close_step(r, event, events, allocations);
 }
 
+// Not while a run is recorded or replayed: what changed is not in the recording.
 static void watch(app_run *r) {
-    uint64_t stamp = r->opt->watch ? core_vfs_stamp(r->vfs, r->entry) : 0;
-    if (stamp && r->watch_stamp && stamp != r->watch_stamp) {
-        core_log(CORE_LOG_INFO, "%s changed: loading it again", r->entry);
-        r->reload = true;
+    if (r->opt->watch && !r->recorder && !r->replay) {
+        script_reload_changed(r->script);
     }
-    r->watch_stamp = stamp;
 }
 
 // Scene changes and reloads happen between steps. False: the run is over.

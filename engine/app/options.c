@@ -193,7 +193,7 @@ static const option_spec table[] = {
     {"replay", "FILE", read_text, AT(replay),
      .help = "run a recording again and compare every step"},
     {"mod", "DIR", read_mod, 0, .help = "load a mod; repeatable"},
-    {"watch", NULL, read_flag, AT(watch), .help = "start the scene again when its files change"},
+    {"watch", NULL, read_flag, AT(watch), .help = "run scripts anew when their files change; the world stays"},
     {"keep-going", NULL, read_flag, AT(keep_going), .help = "go on after a script's error"},
     {"quiet", NULL, read_flag, AT(quiet), .help = "only warnings, errors and what was asked for"},
     {"help", NULL, read_flag, AT(help), .help = "this text"},

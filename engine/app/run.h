@@ -57,7 +57,6 @@ typedef struct app_run {
     char next_scene[256]; // "": stay
     char *run_data;       // JSON from the former scene to the next, NULL: none
     const char *caption;  // drawn over every frame, NULL: none
-    uint64_t watch_stamp;
     app_exit failed; // first reason that ended the run, APP_EXIT_FINE: none
 } app_run;
 

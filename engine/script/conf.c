@@ -149,6 +149,7 @@ bool script_load_file(script *s, const char *path, script_conf *conf) {
         script_record_error(s, s->L);
         return false;
     }
+    snprintf(s->path, sizeof s->path, "%s", path);
     memcpy(s->root, path, folder);
     s->root[folder] = 0;
     snprintf(s->game, sizeof s->game, "%.*s", (int)strcspn(path + folder, "."), path + folder);

@@ -11,7 +11,8 @@ enum {
     SCRIPT_TYPES_MAX = 32,
     SCRIPT_EXPECT_MAX = 256,
     SCRIPT_PARAM_MAX = 256,
-    SCRIPT_MODS_MAX = 32
+    SCRIPT_MODS_MAX = 32,
+    SCRIPT_WATCH_MAX = 256
 };
 
 typedef struct script_type_slot {
@@ -30,6 +31,11 @@ typedef struct script_expect {
     bool missed; // corsac.expect.now fell short: `found` was the value
     double found;
 } script_expect;
+
+typedef struct script_watched { // a file whose change means a reload
+    char path[240];
+    uint64_t stamp;
+} script_watched;
 
 struct script_mod;
 struct script {
@@ -50,17 +56,21 @@ struct script {
     uint64_t callback_count;    // calls from C so far
     uint32_t contact_callbacks; // given to bodies so far
     char *last_error;
-    uint32_t stopped;     // bind_phase bits of callbacks that an error has stopped
-    char *run_data;       // JSON handed to the next scene by corsac.run
-    double time;          // s of simulated time
-    uint64_t seed;        // of the run
-    int corsac_ref;       // the table `corsac`
-    int tick_ref;         // scripts/corsac/tasks.lua
-    int error_screen_ref; // scripts/corsac/error.lua
-    char root[200];       // virtual folder of the game with its '/', "" for the tree's root
-    lua_State *task;      // the coroutine of corsac.spawn that runs now; NULL: none
-    lua_State *service;   // thread of L in which mods reach the game
-    bool awake;           // tasks wait for a step
+    uint32_t stopped;        // bind_phase bits of callbacks that an error has stopped
+    char *run_data;          // JSON handed to the next scene by corsac.run
+    double time;             // s of simulated time
+    uint64_t seed;           // of the run
+    script_watched *watched; // [SCRIPT_WATCH_MAX]
+    int watched_count;
+    char path[240];           // the scene\'s file
+    int reload_ref, kept_ref; // scripts/corsac/reload.lua and save.lua
+    int corsac_ref;           // the table `corsac`
+    int tick_ref;             // scripts/corsac/tasks.lua
+    int error_screen_ref;     // scripts/corsac/error.lua
+    char root[200];           // virtual folder of the game with its '/', "" for the tree's root
+    lua_State *task;          // the coroutine of corsac.spawn that runs now; NULL: none
+    lua_State *service;       // thread of L in which mods reach the game
+    bool awake;               // tasks wait for a step
     struct script_mod *mods[SCRIPT_MODS_MAX]; // in order, of a game
     int mod_count;
     struct script_mod *as_mod; // of a mod's own state
@@ -97,6 +107,8 @@ bool script_protected(script *s, lua_State *L, int argc, int results);
 void script_push_report(const script *s, lua_State *L);
 // Records an error text (top of the stack, popped) as the run's.
 void script_record_error(script *s, lua_State *L);
+// Remembers a file and its present stamp for script_reload_changed.
+void script_watch_file(script *s, const char *virtual_path);
 char *script_copy_text(const char *text); // core_free it
 bool script_compare(double a, script_op op, double b);
 

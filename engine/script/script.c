@@ -31,6 +31,7 @@ script *script_create(const script_desc *desc) {
     s->argv = desc->argv;
     s->given_data = desc->data ? script_copy_text(desc->data) : NULL;
     s->expect = core_alloc(SCRIPT_EXPECT_MAX * sizeof *s->expect);
+    s->watched = core_alloc(SCRIPT_WATCH_MAX * sizeof *s->watched);
     s->param = core_alloc(SCRIPT_PARAM_MAX * sizeof *s->param);
     s->phase = BIND_TOP;
     s->L = script_state_create(s);
@@ -49,6 +50,7 @@ void script_destroy(script *s) {
     if (s->L) {
         lua_close(s->L);
     }
+    core_free(s->watched);
     core_free(s->expect);
     core_free(s->param);
     core_free(s->last_error);

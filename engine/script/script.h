@@ -74,6 +74,10 @@ void script_update(script *s, double dt); // corsac.update
 void script_draw(script *s);              // corsac.draw
 void script_event(script *s, const char *name, const char *text, const double *values, int count);
 void script_quit(script *s); // corsac.quit
+// When a Lua file of the game changed since it was loaded: runs the files' own code anew and calls
+// corsac.reload(state) (tables of corsac.persist by name); the world stays. A file that fails
+// leaves the old code in place. True: new code runs. For every frame of --watch.
+bool script_reload_changed(script *s);
 // Errors so far in this run; the last one's text with file:line, reason and traceback.
 int script_error_count(const script *s);
 const char *script_last_error(const script *s);

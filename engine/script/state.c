@@ -44,6 +44,9 @@ bool script_load_chunk(script *s, lua_State *L, const char *path) {
         }
         bool good = load_text(L, text, size, chunk);
         core_free(text);
+        if (s->watched && !internal) {
+            script_watch_file(s, path);
+        }
         return good;
     }
     const char *text = internal ? script_embedded(path + 7, &size) : NULL;
@@ -184,6 +187,11 @@ static int engine_mod_event(lua_State *L) {
     return 0;
 }
 
+static int engine_at_top(lua_State *L) {
+    lua_pushboolean(L, self(L)->phase == BIND_TOP);
+    return 1;
+}
+
 static int engine_has_mods(lua_State *L) {
     lua_pushboolean(L, self(L)->mod_count > 0);
     return 1;
@@ -265,6 +273,7 @@ static const luaL_Reg engine_functions[] = {{"reseed", engine_reseed},
                                             {"findModule", engine_find_module},
                                             {"modEvent", engine_mod_event},
                                             {"hasMods", engine_has_mods},
+                                            {"atTop", engine_at_top},
                                             {"bodyAt", engine_body_at},
                                             {"callbackCount", engine_callback_count},
                                             {"fastMethods", script_fast_methods},
@@ -327,7 +336,7 @@ lua_State *script_state_create(script *s) {
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
     static const char *const parts[] = {"base",       "native", "columns", "tasks", "events",
-                                        "containers", "prefab", "save",    "mods"};
+                                        "containers", "prefab", "save", "mods", "reload"};
     bool good = true;
     for (size_t i = 0; good && i < CORE_COUNT_OF(parts); i++) {
         good = script_run_part(s, L, parts[i]);
@@ -342,6 +351,10 @@ lua_State *script_state_create(script *s) {
         lua_getfield(L, LUA_REGISTRYINDEX, "corsac.engine");
         lua_getfield(L, -1, "errorScreen");
         s->error_screen_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+        lua_getfield(L, -1, "reload");
+        s->reload_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+        lua_getfield(L, -1, "kept");
+        s->kept_ref = luaL_ref(L, LUA_REGISTRYINDEX);
         s->service = lua_newthread(L);
         lua_setfield(L, LUA_REGISTRYINDEX, "corsac.service");
         lua_getfield(L, -1, "serve");

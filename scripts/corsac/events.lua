@@ -10,7 +10,24 @@ lua["corsac.on"] = function(name, fn)
         list = {}
         listeners[name] = list
     end
-    list[#list + 1] = { fn = fn }
+    list[#list + 1] = { fn = fn, top = engine.atTop and engine.atTop() }
+end
+
+-- Listeners that the files' own code added: taken out before it runs anew; given back when it fails.
+function engine.setTopListeners(former)
+    local removed = {}
+    for name, list in pairs(listeners) do
+        local kept, count = {}, 0
+        for i = 1, #list do
+            if not list[i].top then
+                count = count + 1
+                kept[count] = list[i]
+            end
+        end
+        removed[name], listeners[name] = list, count > 0 and kept or nil
+    end
+    for name, list in pairs(former or {}) do listeners[name] = list end
+    return removed
 end
 
 lua["corsac.off"] = function(name, fn)
