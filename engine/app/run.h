@@ -57,7 +57,7 @@ typedef struct app_run {
     char next_scene[256]; // "": stay
     char *run_data;       // JSON from the former scene to the next, NULL: none
     const char *caption;  // drawn over every frame, NULL: none
-    app_exit failed; // first reason that ended the run, APP_EXIT_FINE: none
+    app_exit failed;      // first reason that ended the run, APP_EXIT_FINE: none
 } app_run;
 
 // run.c: create never gives NULL; r->failed says why it cannot be opened. destroy gives the exit

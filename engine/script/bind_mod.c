@@ -78,32 +78,24 @@ static int cross_protected(lua_State *L) {
     return 0;
 }
 
-// Packs values [first, top] of the mod's L, calls the game, pushes what it gave. Everything that C
-// holds is given back before an error leaves.
+// Packs values [first, top] of the mod's L, calls the game, pushes what it gave.
 static int cross(script *s, lua_State *L, const char *lua, int first) {
     script *game = s->as_mod->game;
-    script_pack *in = lua_newuserdata(L, 2 * sizeof *in), *out = in + 1;
-    int last = lua_gettop(L) - 1;
-    memset(in, 0, 2 * sizeof *in);
+    int last = lua_gettop(L);
+    script_pack *in = script_pack_new(L), *out = script_pack_new(L);
     for (int i = first; i <= last; i++) {
         script_pack_value(s, L, i, in);
     }
     crossing c = {game, lua, in, out};
     lua_State *G = game->service; // the game itself may be inside a coroutine
-    bool good = lua_cpcall(G, cross_protected, &c) == 0;
-    char why[512] = "";
-    if (!good) {
+    if (lua_cpcall(G, cross_protected, &c) != 0) {
+        char why[512];
         const char *text = lua_tostring(G, -1);
         snprintf(why, sizeof why, "%s", text ? text : "the game's service failed");
         lua_pop(G, 1);
-    }
-    int count = good ? script_unpack(s, L, out) : 0;
-    script_pack_release(in);
-    script_pack_release(out);
-    if (!good) {
         bind_error(L, "%s", why);
     }
-    return count;
+    return script_unpack(s, L, out);
 }
 
 typedef struct rest_args {
@@ -180,14 +172,11 @@ static int filter(script *s, lua_State *L, void *args) {
         lua_pushvalue(L, a->value);
         return 1;
     }
-    script_pack *value = lua_newuserdata(L, sizeof *value);
-    *value = (script_pack){0};
+    script_pack *value = script_pack_new(L);
     script_pack_value(s, L, a->value, value);
     script_mods_filter(s, a->name, value);
     value->values = CORE_MIN(value->values, 1);
-    int count = script_unpack(s, L, value);
-    script_pack_release(value);
-    return count;
+    return script_unpack(s, L, value);
 }
 
 // ---- declarations ----

@@ -7,19 +7,41 @@
 
 enum { TAG_NIL, TAG_FALSE, TAG_TRUE, TAG_NUMBER, TAG_STRING, TAG_TABLE, TAG_END, TAG_OBJECT };
 
+static int collect(lua_State *L) {
+    script_pack_release(lua_touserdata(L, 1));
+    return 0;
+}
+
+script_pack *script_pack_new(lua_State *L) {
+    script_pack *p = lua_newuserdata(L, sizeof *p);
+    *p = (script_pack){0};
+    if (luaL_newmetatable(L, "corsac.pack")) {
+        lua_pushcfunction(L, collect);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_setmetatable(L, -2);
+    return p;
+}
+
 static void append(lua_State *L, script_pack *p, const void *data, size_t size) {
     if (p->size + size > PACK_BYTES_MAX) {
         bind_error(L, "data that crosses between game and mod is at most %d KiB",
                    PACK_BYTES_MAX >> 10);
     }
-    if (p->size + size > p->capacity) {
+    if (p->size + size > (p->heap ? p->capacity : sizeof p->small)) {
         size_t capacity = CORE_MAX(256, 2 * (p->size + size));
-        p->bytes = core_realloc(p->bytes, p->capacity, capacity);
+        unsigned char *heap = core_realloc(p->heap, p->heap ? p->capacity : 0, capacity);
+        if (!p->heap) {
+            memcpy(heap, p->small, p->size);
+        }
+        p->heap = heap;
         p->capacity = capacity;
     }
-    memcpy(p->bytes + p->size, data, size);
+    memcpy((p->heap ? p->heap : p->small) + p->size, data, size);
     p->size += size;
 }
+
+static const unsigned char *bytes_of(const script_pack *p) { return p->heap ? p->heap : p->small; }
 
 static void append_tag(lua_State *L, script_pack *p, int tag) {
     unsigned char byte = (unsigned char)tag;
@@ -101,7 +123,7 @@ void script_pack_value(script *s, lua_State *L, int index, script_pack *out) {
 }
 
 static void take(const script_pack *p, size_t *at, void *out, size_t size) {
-    memcpy(out, p->bytes + *at, size);
+    memcpy(out, bytes_of(p) + *at, size);
     *at += size;
 }
 
@@ -126,7 +148,7 @@ static void unpack(script *s, lua_State *L, const script_pack *p, size_t *at) {
     case TAG_STRING: {
         size_t length;
         take(p, at, &length, sizeof length);
-        lua_pushlstring(L, (const char *)p->bytes + *at, length);
+        lua_pushlstring(L, (const char *)bytes_of(p) + *at, length);
         *at += length;
         return;
     }
@@ -140,7 +162,7 @@ static void unpack(script *s, lua_State *L, const script_pack *p, size_t *at) {
     }
     default:
         lua_newtable(L);
-        while (p->bytes[*at] != TAG_END) {
+        while (bytes_of(p)[*at] != TAG_END) {
             unpack(s, L, p, at);
             unpack(s, L, p, at);
             lua_rawset(L, -3);
@@ -159,6 +181,6 @@ int script_unpack(script *s, lua_State *L, const script_pack *in) {
 }
 
 void script_pack_release(script_pack *p) {
-    core_free(p->bytes);
+    core_free(p->heap);
     *p = (script_pack){0};
 }

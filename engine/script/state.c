@@ -177,13 +177,11 @@ static int engine_mod_event(lua_State *L) {
         return 0;
     }
     int last = lua_gettop(L);
-    script_pack *args = lua_newuserdata(L, sizeof *args);
-    *args = (script_pack){0};
+    script_pack *args = script_pack_new(L);
     for (int i = 3; i <= last; i++) {
         script_pack_value(s, L, i, args);
     }
     script_mods_event(s, lua_tostring(L, 2), lua_toboolean(L, 1), args);
-    script_pack_release(args);
     return 0;
 }
 
@@ -336,7 +334,7 @@ lua_State *script_state_create(script *s) {
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
     static const char *const parts[] = {"base",       "native", "columns", "tasks", "events",
-                                        "containers", "prefab", "save", "mods", "reload"};
+                                        "containers", "prefab", "save",    "mods",  "reload"};
     bool good = true;
     for (size_t i = 0; good && i < CORE_COUNT_OF(parts); i++) {
         good = script_run_part(s, L, parts[i]);
