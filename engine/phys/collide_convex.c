@@ -347,3 +347,17 @@ void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, ph
         }
     }
 }
+
+float phys_separation(const phys_geom *a, const phys_geom *b, core_vec3 *normal) {
+    if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
+        const phys_geom *plane = a->type == PHYS_PLANE ? a : b, *shape = plane == a ? b : a;
+        core_vec3 up = phys_mat_col(&plane->axes, 1);
+        *normal = plane == a ? up : core_v3_scale(up, -1.0f);
+        return lowest(shape, up) - core_v3_dot(plane->position, up) - round_radius(shape);
+    }
+    core_vec3 ca[8], cb[8], d = core_v3_sub(b->position, a->position);
+    phys_geom_convex va = make_convex(a, ca), vb = make_convex(b, cb);
+    phys_geom_gjk_result r = phys_geom_gjk(&va, &vb);
+    *normal = phys_unit(core_v3_sub(r.closest.b, r.closest.a), phys_unit(d, core_v3(0, 1, 0)));
+    return r.overlap.hit ? -r.overlap.depth : r.closest.distance;
+}

@@ -5,21 +5,107 @@
 
 #define NARROW_GRAIN 256u
 
-// Ball on something that does not move: closed forms, one at a time.
+static float extent_of(const phys_shapes *s, uint32_t i) {
+    float e = core_v3_length(s->half[i]) + s->radius[i];
+    return (e > 0.0f ? e : PHYS_FAR) + core_v3_length(s->position[i]);
+}
+
+// Half of the smallest width; a ball counts as thin, since it is cheap to sweep.
+static float thin_of(const phys_shapes *s, uint32_t i) {
+    core_vec3 h = s->half[i];
+    bool flat = s->type[i] == PHYS_BOX || s->type[i] == PHYS_HULL;
+    return flat                        ? CORE_MIN(h.x, CORE_MIN(h.y, h.z))
+           : s->type[i] == PHYS_SPHERE ? 0.0f
+                                       : s->radius[i];
+}
+
+static phys_moving moving_shape(const phys_world *w, uint32_t shape, uint32_t row) {
+    const phys_bodies *b = &w->bodies;
+    bool moves = phys_moves(b, row);
+    phys_moving m = {.geom = phys_shape_geom(w, shape),
+                     .center = phys_get3(b->cx, b->cy, b->cz, row),
+                     .extent = moves ? extent_of(&w->shapes, shape) : 0.0f};
+    if (moves) {
+        m.v = phys_get3(b->vx, b->vy, b->vz, row);
+        m.w = phys_get3(b->wx, b->wy, b->wz, row);
+    }
+    return m;
+}
+
+// One point in the middle instead of several: a blow through the middle stops a body in one go,
+// while four at its corners would first set it spinning.
+static void merge_points(phys_manifold *m) {
+    phys_point p = m->point[0];
+    for (uint32_t k = 1; k < m->count; k++) {
+        p.ra = core_v3_add(p.ra, m->point[k].ra);
+        p.separation = CORE_MIN(p.separation, m->point[k].separation);
+    }
+    p.rb = p.ra = core_v3_scale(p.ra, 1.0f / (float)m->count);
+    p.feature = 1u << 30;
+    m->point[0] = p;
+    m->count = 1;
+}
+
+// Contact of a pair that may meet late in the step: point and normal are those of the moment they
+// meet, the gap is what has to close until then. No points: they pass each other.
+static void sweep_pair(const phys_moving *a, const phys_moving *b, float dt, phys_manifold *m) {
+    float t;
+    m->count = 0;
+    m->apart = 0.0f;
+    if (!phys_sweep(a, b, dt, &t)) {
+        return;
+    }
+    phys_geom ga = phys_moving_at(a, t), gb = phys_moving_at(b, t);
+    m->normal = core_v3(0, 0, 0);
+    phys_collide(&ga, &gb, PHYS_MARGIN, m);
+    if (m->count > 1) {
+        merge_points(m);
+    }
+    // Anchors from the centres as they are then; the gap that their motion closes until then.
+    core_vec3 way_a = core_v3_scale(a->v, t), way_b = core_v3_scale(b->v, t);
+    for (uint32_t k = 0; k < m->count; k++) {
+        phys_point *p = &m->point[k];
+        p->ra = core_v3_sub(p->ra, way_a);
+        p->rb = core_v3_sub(p->rb, way_b);
+        core_vec3 va = core_v3_cross(a->w, core_v3_sub(p->ra, a->center));
+        core_vec3 vb = core_v3_cross(b->w, core_v3_sub(p->rb, b->center));
+        core_vec3 v = core_v3_sub(core_v3_add(b->v, vb), core_v3_add(a->v, va));
+        p->separation -= t * core_v3_dot(v, m->normal);
+    }
+}
+
+static bool touches(const phys_manifold *m) {
+    for (uint32_t k = 0; k < m->count; k++) {
+        if (m->point[k].separation < PHYS_NEAR) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Slow pairs: what is within the margin. Fast ones: what touches, else what the sweep finds.
+static void search_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t ra, uint32_t rb,
+                        float dt, phys_manifold *m) {
+    phys_moving a = moving_shape(w, sa, ra), b = moving_shape(w, sb, rb);
+    float turn = core_v3_length(a.w) * a.extent + core_v3_length(b.w) * b.extent;
+    float way = (core_v3_length(core_v3_sub(a.v, b.v)) + turn) * dt;
+    float thin = CORE_MIN(thin_of(&w->shapes, sa), thin_of(&w->shapes, sb));
+    bool fast = way > CORE_MAX(PHYS_FAST, 0.5f * thin);
+    phys_collide(&a.geom, &b.geom, PHYS_MARGIN + (fast ? 0.0f : way), m);
+    if (fast && !touches(m)) {
+        if (m->apart > PHYS_MARGIN + way) {
+            return;
+        }
+        sweep_pair(&a, &b, dt, m);
+    }
+}
+
+// Ball on something that does not move: one at a time.
 static void refresh_fixed_ball(phys_world *w, uint32_t i, float dt) {
     phys_balls *c = &w->balls;
-    const phys_bodies *b = &w->bodies;
-    uint32_t ra = c->a[i];
-    phys_geom ga = phys_shape_geom(w, phys_slot_row(&w->shapes.set, c->sa[i]));
-    phys_geom gb = phys_shape_geom(w, phys_slot_row(&w->shapes.set, c->sb[i]));
-    core_vec3 dv = phys_get3(b->vx, b->vy, b->vz, ra);
     phys_manifold m = {0};
-    phys_collide(&ga, &gb, PHYS_MARGIN + core_v3_length(dv) * dt, &m);
-    // Far pairs count only when the gap can close within this step.
-    if (m.count != 0 &&
-        m.point[0].separation > PHYS_MARGIN + CORE_MAX(core_v3_dot(dv, m.normal), 0.0f) * dt) {
-        m.count = 0;
-    }
+    search_pair(w, phys_slot_row(&w->shapes.set, c->sa[i]), phys_slot_row(&w->shapes.set, c->sb[i]),
+                c->a[i], c->b[i], dt, &m);
     if (m.count == 0) {
         c->separation[i] = PHYS_APART;
         c->jn[i] = c->jx[i] = c->jy[i] = c->jz[i] = 0.0f;
@@ -86,11 +172,6 @@ typedef struct pair_view {
     float extent;     // farthest reach of the smaller one: how far a turn can move its points
 } pair_view;
 
-static float extent_of(const phys_shapes *s, uint32_t i) {
-    float e = core_v3_length(s->half[i]) + s->radius[i];
-    return (e > 0.0f ? e : PHYS_FAR) + core_v3_length(s->position[i]);
-}
-
 static pair_view view_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t ra,
                            uint32_t rb) {
     const phys_bodies *b = &w->bodies;
@@ -145,15 +226,15 @@ static void refresh_contact(phys_world *w, uint32_t i, float dt) {
     }
     core_vec3 dv =
         core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
-    float reach = PHYS_MARGIN + core_v3_length(dv) * dt;
+    float spin = core_v3_length(phys_get3(b->wx, b->wy, b->wz, ra)) +
+                 core_v3_length(phys_get3(b->wx, b->wy, b->wz, rb));
     pair_view v = view_pair(w, sa, sb, ra, rb);
     phys_manifold *old = &c->manifold[i];
-    if (recycle(old, &v, reach)) {
+    if (recycle(old, &v, PHYS_MARGIN + (core_v3_length(dv) + spin * v.extent) * dt)) {
         return;
     }
-    phys_geom ga = phys_shape_geom(w, sa), gb = phys_shape_geom(w, sb);
     phys_manifold m = {.normal = old->normal, .qa = v.qa, .qb = v.qb, .offset = v.offset};
-    phys_collide(&ga, &gb, reach, &m);
+    search_pair(w, sa, sb, ra, rb, dt, &m);
     core_vec3 ca = phys_get3(b->cx, b->cy, b->cz, ra), cb = phys_get3(b->cx, b->cy, b->cz, rb);
     for (uint32_t k = 0; k < m.count; k++) {
         m.point[k].ra = core_v3_sub(m.point[k].ra, ca);

@@ -2,10 +2,6 @@
 #include "phys/rows.h"
 #include "phys/world.h"
 
-static vf gather_dot(const float *x, vi a, vi b, vf n) {
-    return vf_mul(vf_sub(vf_gather(x, a), vf_gather(x, b)), n);
-}
-
 void CORE_SIMD_NAME(phys_narrow_balls)(phys_world *w, uint32_t begin, uint32_t end, float dt) {
     phys_balls *c = &w->balls;
     const phys_bodies *b = &w->bodies;
@@ -24,11 +20,29 @@ void CORE_SIMD_NAME(phys_narrow_balls)(phys_world *w, uint32_t begin, uint32_t e
         vf nx = vf_keep(some, vf_mul(dx, inv)), nz = vf_keep(some, vf_mul(dz, inv));
         vf ny = vf_select(some, vf_mul(dy, inv), vf_set1(1.0f));
         vf gap = vf_sub(length, vf_load(c->reach + i));
-        // Far pairs count only when the gap can close within this step.
-        vf speed = vf_add(vf_add(gather_dot(b->vx, ia, ib, nx), gather_dot(b->vy, ia, ib, ny)),
-                          gather_dot(b->vz, ia, ib, nz));
-        vf reach = vf_add(margin, vf_mul(vf_max(speed, zero), vf_set1(dt)));
-        vm near = vf_le(gap, reach);
+        // Slow pairs count within the margin and as far as they can close in this step. Fast ones
+        // that do not touch yet count when they meet on their way, with the normal of that moment.
+        vf ux = vf_sub(vf_gather(b->vx, ib), vf_gather(b->vx, ia));
+        vf uy = vf_sub(vf_gather(b->vy, ib), vf_gather(b->vy, ia));
+        vf uz = vf_sub(vf_gather(b->vz, ib), vf_gather(b->vz, ia));
+        rows3 d = {dx, dy, dz}, u = {ux, uy, uz};
+        vf speed2 = rows_dot(u, u), along = rows_dot(d, u), touch = vf_load(c->reach + i);
+        vf closing = vf_neg(rows_dot((rows3){nx, ny, nz}, u));
+        vm close = vf_le(gap, vf_add(margin, vf_mul(vf_max(closing, zero), vf_set1(dt))));
+        vm fast = vm_and(vf_gt(speed2, vf_set1(PHYS_FAST * PHYS_FAST / (dt * dt))),
+                         vf_gt(gap, vf_set1(PHYS_NEAR)));
+        vf c2 = vf_sub(rows_dot(d, d), vf_mul(touch, touch));
+        vf disc = vf_sub(vf_mul(along, along), vf_mul(speed2, c2));
+        vf root = vf_sqrt(vf_max(disc, zero));
+        vf t = vf_div(vf_sub(vf_neg(along), root), vf_select(fast, speed2, vf_set1(1.0f)));
+        vm meets = vm_and(vm_and(vf_ge(disc, zero), vf_lt(along, zero)), vf_le(t, vf_set1(dt)));
+        rows3 at = rows_mul(rows_mad(d, u, t), rows_inverse(touch));
+        nx = vf_select(fast, at.x, nx);
+        ny = vf_select(fast, at.y, ny);
+        nz = vf_select(fast, at.z, nz);
+        gap = vf_select(fast, vf_sub(rows_dot(d, (rows3){nx, ny, nz}), touch), gap);
+        vm fixed = vf_ge(touch, vf_set1(PHYS_APART)); // done one by one afterwards
+        vm near = vm_or(fixed, vm_or(vm_andnot(close, fast), vm_and(fast, meets)));
         vf_store(c->nx + i, nx);
         vf_store(c->ny + i, ny);
         vf_store(c->nz + i, nz);

@@ -291,7 +291,13 @@ static phys_box reach_box(const phys_world *w, uint32_t i, uint32_t row, float d
     }
     core_vec3 v = phys_get3(b->vx, b->vy, b->vz, row);
     *way = b->type[row] == PHYS_STATIC ? core_v3(0, 0, 0) : core_v3_scale(v, dt);
-    core_vec3 grow = core_v3_add(phys_abs3(*way), core_v3(PHYS_MARGIN, PHYS_MARGIN, PHYS_MARGIN));
+    core_vec3 spin = phys_get3(b->wx, b->wy, b->wz, row);
+    float turn = PHYS_MARGIN;
+    if (s->type[i] != PHYS_SPHERE && b->type[row] != PHYS_STATIC) {
+        float extent = core_v3_length(s->half[i]) + s->radius[i];
+        turn += CORE_MIN(core_v3_length(spin) * dt, 1.0f) * extent;
+    }
+    core_vec3 grow = core_v3_add(phys_abs3(*way), core_v3(turn, turn, turn));
     return (phys_box){{box.min.x - grow.x, box.min.y - grow.y, box.min.z - grow.z},
                       {box.max.x + grow.x, box.max.y + grow.y, box.max.z + grow.z}};
 }

@@ -25,7 +25,9 @@ enum {
 // than this (cosine of half the angle, 5 degrees).
 #define PHYS_KEEP_DISTANCE 0.02f
 #define PHYS_KEEP_COSINE   0.99905f
-#define PHYS_APART         1e30f   // separation of a pair out of reach
+#define PHYS_APART         1e30f // separation of a pair out of reach
+#define PHYS_FAST          0.05f // m: pairs that approach by more in a step are swept unless they touch
+#define PHYS_NEAR          0.001f  // m: gap up to which a pair counts as touching then
 #define PHYS_TOUCH         0.0005f // gaps up to this count as touching in events
 #define PHYS_FAR           1e6f    // positions beyond are refused
 #define PHYS_BOUNCE_MIN    0.2f // m/s: slower impacts do not bounce (they would never come to rest)
@@ -365,6 +367,20 @@ void phys_narrow_update(phys_world *world, float dt);
 CORE_SIMD_DECLARE(void, phys_narrow_balls,
                   (phys_world * world, uint32_t begin, uint32_t end, float dt))
 void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
+// Distance of two shapes (<= 0: overlap) and the unit direction from a to b along which it is.
+float phys_separation(const phys_geom *a, const phys_geom *b, core_vec3 *normal);
+
+// sweep.c: a shape in motion about its body's centre of mass. extent: its farthest reach from
+// there.
+typedef struct phys_moving {
+    phys_geom geom;
+    core_vec3 center, v, w;
+    float extent;
+} phys_moving;
+phys_geom phys_moving_at(const phys_moving *m, float t);
+// First time in [0, dt] at which they touch. Conservative advancement; see sweep.c.
+bool phys_sweep(const phys_moving *a, const phys_moving *b, float dt, float *time);
+
 void phys_collide_convex(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
