@@ -62,9 +62,14 @@ static uint32_t take_events(app_run *r, gfx_event out[APP_MAX_EVENTS]) {
 }
 
 static void headless_frame(app_run *r, uint64_t step) {
-    if (app_frame_wanted(r, step) && app_device_open(r, false) && app_frame(r, 1.0f)) {
+    if (!app_frame_wanted(r, step)) {
+        return;
+    }
+    uint64_t begin = core_clock_ns();
+    if (app_device_open(r, false) && app_frame(r, 1.0f)) {
         app_frame_files(r, step);
     }
+    core_metrics_step_exclude_ns(r->metrics, core_clock_ns() - begin);
 }
 
 // Last of a step: nothing here is part of what it cost.

@@ -109,6 +109,12 @@ void core_metrics_step_begin(core_metrics *m) {
     }
 }
 
+void core_metrics_step_exclude_ns(core_metrics *m, uint64_t ns) {
+    if (m) {
+        m->step_start += ns;
+    }
+}
+
 void core_metrics_step_end(core_metrics *m) {
     if (!m) {
         return;

@@ -62,6 +62,9 @@ void core_metrics_destroy(core_metrics *m);
 // A step's boundaries; stage times inside one step are summed, then become one sample.
 void core_metrics_step_begin(core_metrics *m);
 void core_metrics_step_end(core_metrics *m);
+// So much of the running step's time was not its own (a picture that was asked for): step_ms leaves
+// it out, stages keep theirs.
+void core_metrics_step_exclude_ns(core_metrics *m, uint64_t ns);
 // Stages nest; each time is inclusive. m may be NULL (no cost but the test). Main thread only.
 void core_stage_begin(core_metrics *m, core_stage stage);
 void core_stage_end(core_metrics *m, core_stage stage);
