@@ -51,7 +51,7 @@ endif
 include tools/build.mk
 
 ##@ Use
-.PHONY: help run play bench lab
+.PHONY: help run play bench bench-peers lab
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ { print "\n" substr($$0, 5) } /^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 
@@ -66,6 +66,10 @@ play: all ## the same scene in a window
 
 bench: all ## ms per step for 500 to 10,000 spheres -> out/bench.json
 	@python3 tools/bench.py --corsac $(OUT)/corsac
+
+bench-peers: all ## the same physics scenes on Corsac, Box3D, Bullet, ODE: speed and error from one run
+	@tools/setup.sh peers || echo "peers whose packages are missing are skipped"
+	@python3 tools/peers/bench.py
 
 lab: all ## speed against accuracy, charted -> out/lab/report.html; LAB=quick: under 5 minutes
 	@tools/setup.sh lab

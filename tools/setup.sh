@@ -54,6 +54,9 @@ build file:/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf fonts-dejavu-core
 build file:/etc/ssl/cert*.pem|/etc/ssl/certs/ca-certificates.crt ca-certificates
 build venv: python3-venv
 lab venv: python3-venv
+peers cmd:g++ g++
+peers pc:bullet libbullet-dev
+peers pc:ode libode-dev
 window cmd:xvfb-run xvfb
 window cmd:xauth xauth
 clang cmd:clang clang
@@ -278,9 +281,9 @@ gen)
     unity
     ;;
 lab) lab ;;
-window | clang | lint) install_missing build "$@" ;;
+window | clang | lint | peers) install_missing build "$@" ;;
 *)
-    say "unknown group $1; known: build gen lab window clang lint"
+    say "unknown group $1; known: build gen lab window clang lint peers"
     exit 2
     ;;
 esac

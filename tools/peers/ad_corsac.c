@@ -1,11 +1,13 @@
 /* Corsac behind the peers' interface (pe.h). Default settings; PE_BEST and PE_FINE double and
  * quadruple the substeps. Groups are layers whose members do not collide with each other. */
+#include "core/simd.h"
 #include "pe.h"
 #include "phys/phys.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct pe_world {
     phys_world *w;
@@ -19,7 +21,18 @@ const char *pe_name(void) { return "corsac"; }
 
 static core_vec3 vec(const double p[3]) { return core_v3((float)p[0], (float)p[1], (float)p[2]); }
 
+// CORSAC_SIMD=sse2|avx2|avx512 forces a set (speed only: the bits are the same).
+static void choose_set(void) {
+    const char *wanted = getenv("CORSAC_SIMD");
+    for (int s = 0; wanted && s < CORE_SIMD_SETS; s++) {
+        if (strcmp(wanted, core_simd_name((core_simd_set)s)) == 0) {
+            core_simd_use((core_simd_set)s);
+        }
+    }
+}
+
 pe_world *pe_create(const pe_world_def *d) {
+    choose_set();
     pe_world *p = calloc(1, sizeof *p);
     phys_world_desc wd = phys_world_desc_default();
     p->jobs = d->threads > 1 ? core_jobs_create(d->threads) : NULL;
