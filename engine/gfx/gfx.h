@@ -60,6 +60,7 @@ typedef struct gfx_light_desc {
 gfx_light_desc gfx_light_desc_default(gfx_light_type type);
 gfx_light gfx_light_create(gfx_world *world, const gfx_light_desc *desc);
 bool gfx_light_destroy(gfx_world *world, gfx_light light);
+bool gfx_light_alive(const gfx_world *world, gfx_light light);
 bool gfx_light_set_position(gfx_world *world, gfx_light light, core_vec3 position);
 bool gfx_light_set_direction(gfx_world *world, gfx_light light, core_vec3 direction);
 bool gfx_light_set_color(gfx_world *world, gfx_light light, float r, float g, float b,
@@ -99,6 +100,7 @@ gfx_material_desc gfx_material_desc_default(void); // white, rough 0.5, not meta
 gfx_material gfx_material_create(gfx_world *world, const gfx_material_desc *desc);
 // Instances of a destroyed material are drawn in the default one.
 bool gfx_material_destroy(gfx_world *world, gfx_material material);
+bool gfx_material_alive(const gfx_world *world, gfx_material material);
 
 typedef struct gfx_instance_desc {
     gfx_mesh mesh;

@@ -204,6 +204,10 @@ bool gfx_light_destroy(gfx_world *world, gfx_light light) {
            core_fail("gfx_light_destroy: the handle is stale or null");
 }
 
+bool gfx_light_alive(const gfx_world *world, gfx_light light) {
+    return core_columns_row(&world->lights.set, light) != CORE_NO_ROW;
+}
+
 bool gfx_light_set_position(gfx_world *world, gfx_light light, core_vec3 position) {
     uint32_t i;
     if (!row_of(&world->lights.set, light, "gfx_light_set_position", &i)) {
@@ -326,6 +330,10 @@ bool gfx_material_destroy(gfx_world *world, gfx_material material) {
     world->material_version++;
     return core_columns_remove(&world->materials.set, material, NULL, NULL) ||
            core_fail("gfx_material_destroy: the handle is stale or null");
+}
+
+bool gfx_material_alive(const gfx_world *world, gfx_material material) {
+    return core_columns_row(&world->materials.set, material) != CORE_NO_ROW;
 }
 
 // ---- instances ----

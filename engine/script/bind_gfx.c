@@ -1,4 +1,5 @@
 // corsac.gfx: camera, lights, drawing on the screen. None of it changes the simulation.
+#include "script/bind_gfx.h"
 #include "script/internal.h"
 
 #include <string.h>
@@ -31,7 +32,7 @@ static int set_ambient(script *s, lua_State *L, void *args) {
 typedef struct camera_options {
     core_vec3 position, target;
     core_quat rotation;
-    float fov, near_plane, far;
+    float fov, near_plane, far, height;
     bool has_position, has_target, has_rotation;
 } camera_options;
 typedef struct camera_call {
@@ -82,6 +83,7 @@ static int set_camera(script *s, lua_State *L, void *args) {
     camera.fovy = o->fov;
     camera.near_plane = o->near_plane;
     camera.virtual_far = o->far;
+    camera.ortho_height = o->height;
     gfx_world_set_camera(world, &camera);
     return 0;
 }
@@ -115,13 +117,12 @@ static int get_camera(script *s, lua_State *L, void *args) {
 typedef struct light_options {
     int type;
     core_vec3 position, direction;
-    float color[4], intensity, radius, inner, outer;
+    float color[4], intensity, radius, inner, outer, source;
+    bool shadows, has_shadows, has_source;
 } light_options;
 typedef struct light_call {
     light_options options;
 } light_call;
-
-extern const bind_type bind_light_type;
 
 static int new_light(script *s, lua_State *L, void *args) {
     const light_options *o = &((light_call *)args)->options;
@@ -133,6 +134,12 @@ static int new_light(script *s, lua_State *L, void *args) {
     desc.radius = o->radius;
     desc.inner = o->inner;
     desc.outer = o->outer;
+    if (o->has_source) {
+        desc.source = o->source;
+    }
+    if (o->has_shadows) {
+        desc.shadows = o->shadows;
+    }
     gfx_light light = gfx_light_create(scene_gfx(s->scene), &desc);
     if (core_handle_is_null(light)) {
         bind_fail(L);
@@ -141,10 +148,8 @@ static int new_light(script *s, lua_State *L, void *args) {
     return 1;
 }
 
-// Stale lights are caught by the room itself: every function of it checks its handle.
 static bool light_alive(script *s, core_handle h) {
-    (void)h;
-    return scene_gfx_if(s->scene) != NULL;
+    return scene_gfx_if(s->scene) && gfx_light_alive(scene_gfx_if(s->scene), h);
 }
 
 typedef struct light_vector_args {
@@ -160,6 +165,11 @@ static int light_set_position(script *s, lua_State *L, void *args) {
     const light_vector_args *a = args;
     return done(L, gfx_light_set_position(scene_gfx(s->scene), a->self,
                                           core_v3((float)a->x, (float)a->y, (float)a->z)));
+}
+static int light_set_direction(script *s, lua_State *L, void *args) {
+    const light_vector_args *a = args;
+    return done(L, gfx_light_set_direction(scene_gfx(s->scene), a->self,
+                                           core_v3((float)a->x, (float)a->y, (float)a->z)));
 }
 static int light_set_color(script *s, lua_State *L, void *args) {
     const light_color_args *a = args;
@@ -180,6 +190,12 @@ static const bind_fn light_methods[] = {
                {"z", BIND_NUMBER, BIND_AT(light_vector_args, z), "", "m"}),
      NULL, sizeof(light_vector_args), BIND_RUNNING, .mod = true, .cost = 8,
      .run = light_set_position},
+    {"setDirection", "Turns a spot or directional light: where its light goes.",
+     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(light_vector_args, x)},
+               {"y", BIND_NUMBER, BIND_AT(light_vector_args, y)},
+               {"z", BIND_NUMBER, BIND_AT(light_vector_args, z)}),
+     NULL, sizeof(light_vector_args), BIND_RUNNING, .mod = true, .cost = 8,
+     .run = light_set_direction},
     {"setColor", "Changes colour and intensity.",
      BIND_ARGS(COLOR_ARG(light_color_args, r), COLOR_ARG(light_color_args, g),
                COLOR_ARG(light_color_args, b),
@@ -192,6 +208,148 @@ static const bind_fn light_methods[] = {
     {0}};
 
 const bind_type bind_light_type = {"Light", "A source of light.", light_alive, light_methods};
+
+// ---- materials ----
+
+#define ALPHA_MODES "opaque|mask|blend"
+typedef struct material_options {
+    float base_color[4], emissive[4], metallic, roughness, normal_scale, occlusion, cutoff;
+    int alpha;
+    bool double_sided;
+    const char *base_color_map, *normal_map, *metallic_roughness_map, *occlusion_map, *emissive_map;
+} material_options;
+typedef struct material_call {
+    material_options options;
+} material_call;
+
+static bool material_alive(script *s, core_handle h) {
+    return scene_gfx_if(s->scene) && gfx_material_alive(scene_gfx_if(s->scene), h);
+}
+
+static void copy_path(lua_State *L, char out[CORE_NAME_MAX], const char *path) {
+    if (path && strlen(path) >= CORE_NAME_MAX) {
+        bind_error(L, "corsac.gfx.newMaterial: the path '%s' is longer than %d bytes", path,
+                   CORE_NAME_MAX - 1);
+    }
+    if (path) {
+        memcpy(out, path, strlen(path) + 1);
+    }
+}
+
+static int new_material(script *s, lua_State *L, void *args) {
+    const material_options *o = &((material_call *)args)->options;
+    gfx_material_desc desc = gfx_material_desc_default();
+    core_material_data *m = &desc.data;
+    memcpy(m->base_color, o->base_color, sizeof m->base_color);
+    memcpy(m->emissive, o->emissive, sizeof m->emissive);
+    m->metallic = o->metallic, m->roughness = o->roughness;
+    m->normal_scale = o->normal_scale, m->occlusion_strength = o->occlusion;
+    m->alpha_mode = o->alpha, m->alpha_cutoff = o->cutoff;
+    m->double_sided = o->double_sided;
+    copy_path(L, m->base_color_image, o->base_color_map);
+    copy_path(L, m->normal_image, o->normal_map);
+    copy_path(L, m->metallic_roughness_image, o->metallic_roughness_map);
+    copy_path(L, m->occlusion_image, o->occlusion_map);
+    copy_path(L, m->emissive_image, o->emissive_map);
+    gfx_material material = gfx_material_create(scene_gfx(s->scene), &desc);
+    if (core_handle_is_null(material)) {
+        bind_fail(L);
+    }
+    bind_push(s, L, &bind_material_type, material);
+    return 1;
+}
+
+static int material_destroy(script *s, lua_State *L, void *args) {
+    return done(L, gfx_material_destroy(scene_gfx(s->scene), *(core_handle *)args));
+}
+
+static const bind_fn material_methods[] = {
+    {"destroy", "Removes the material: what has it is drawn in the plain one.", NULL, NULL,
+     sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 20, .run = material_destroy},
+    {0}};
+
+const bind_type bind_material_type = {"Material",
+                                      "How a surface looks: metallic-roughness, as glTF.",
+                                      material_alive, material_methods};
+
+#define MAP(member, what) BIND_STRING, BIND_AT(material_options, member), what, .optional = true
+static const bind_arg material_fields[] = {
+    {"baseColor", BIND_COLOR, BIND_AT(material_options, base_color), "linear, and coverage",
+     .optional = true, .def_vec = {1, 1, 1}},
+    {"metallic", BIND_FLOAT, BIND_AT(material_options, metallic), "0 or 1 but where things mix",
+     NULL, BIND_BETWEEN, .max = 1, .optional = true},
+    {"roughness", BIND_FLOAT, BIND_AT(material_options, roughness), "0 is a mirror", NULL,
+     BIND_BETWEEN, .max = 1, .optional = true, .def = 0.5},
+    {"emissive", BIND_COLOR, BIND_AT(material_options, emissive), "radiance sent out",
+     .optional = true},
+    {"alpha", BIND_ENUM, BIND_AT(material_options, alpha), "what coverage means", .optional = true,
+     .values = ALPHA_MODES},
+    {"cutoff", BIND_FLOAT, BIND_AT(material_options, cutoff), "mask: least coverage that is drawn",
+     NULL, BIND_BETWEEN, .max = 1, .optional = true, .def = 0.5},
+    {"doubleSided", BIND_BOOL, BIND_AT(material_options, double_sided), "seen from behind too",
+     .optional = true},
+    {"normalScale", BIND_FLOAT, BIND_AT(material_options, normal_scale), "of the normal map",
+     .optional = true, .def = 1},
+    {"occlusion", BIND_FLOAT, BIND_AT(material_options, occlusion), "strength of the occlusion map",
+     NULL, BIND_BETWEEN, .max = 1, .optional = true, .def = 1},
+    {"baseColorMap", MAP(base_color_map, "image file, sRGB")},
+    {"normalMap", MAP(normal_map, "image file, +Y up")},
+    {"metallicRoughnessMap", MAP(metallic_roughness_map, "image file: green rough, blue metallic")},
+    {"occlusionMap", MAP(occlusion_map, "image file: red")},
+    {"emissiveMap", MAP(emissive_map, "image file, sRGB")},
+    {0}};
+
+// ---- environment and settings ----
+
+typedef struct environment_options {
+    const char *panorama;
+    float intensity, zenith[4], horizon[4], ground[4], glow[4], exponent;
+    core_vec3 sun;
+} environment_options;
+typedef struct environment_call {
+    environment_options options;
+} environment_call;
+
+static int set_environment(script *s, lua_State *L, void *args) {
+    const environment_options *o = &((environment_call *)args)->options;
+    gfx_environment e = gfx_environment_default();
+    e.panorama = o->panorama;
+    e.intensity = o->intensity;
+    memcpy(e.zenith, o->zenith, sizeof e.zenith);
+    memcpy(e.horizon, o->horizon, sizeof e.horizon);
+    memcpy(e.ground, o->ground, sizeof e.ground);
+    memcpy(e.glow, o->glow, sizeof e.glow);
+    e.glow_exponent = o->exponent;
+    e.sun = o->sun;
+    return done(L, gfx_world_set_environment(scene_gfx(s->scene), &e));
+}
+
+static const bind_arg environment_fields[] = {
+    {"panorama", BIND_STRING, BIND_AT(environment_options, panorama),
+     "equirectangular image file in place of the sky", .optional = true},
+    {"intensity", BIND_FLOAT, BIND_AT(environment_options, intensity), "factor", NULL,
+     BIND_POSITIVE, .optional = true, .def = 1},
+    {"zenith", BIND_COLOR, BIND_AT(environment_options, zenith), "radiance from above",
+     .optional = true, .def_vec = {0.16f, 0.32f, 0.72f}},
+    {"horizon", BIND_COLOR, BIND_AT(environment_options, horizon), "radiance from the horizon",
+     .optional = true, .def_vec = {0.75f, 0.86f, 1.0f}},
+    {"ground", BIND_COLOR, BIND_AT(environment_options, ground), "radiance from below",
+     .optional = true, .def_vec = {0.22f, 0.2f, 0.18f}},
+    {"glow", BIND_COLOR, BIND_AT(environment_options, glow), "radiance round the sun",
+     .optional = true, .def_vec = {2.2f, 1.8f, 1.2f}},
+    {"glowExponent", BIND_FLOAT, BIND_AT(environment_options, exponent), "the larger the narrower",
+     NULL, BIND_BETWEEN, .min = 1, .max = 4096, .optional = true, .def = 64},
+    {"sun", BIND_VEC3, BIND_AT(environment_options, sun), "direction to the sun", .optional = true,
+     .def_vec = {0.4f, 0.8f, 0.4f}},
+    {0}};
+
+typedef struct setting_args {
+    const char *name, *value;
+} setting_args;
+static int set_setting(script *s, lua_State *L, void *args) {
+    const setting_args *a = args;
+    return done(L, gfx_world_set(scene_gfx(s->scene), a->name, a->value));
+}
 
 // ---- the screen ----
 
@@ -254,6 +412,9 @@ static const bind_arg camera_fields[] = {
      BIND_POSITIVE, .optional = true, .def = 0.1},
     {"far", BIND_FLOAT, BIND_AT(camera_options, far), "no point or spot light is seen beyond", "m",
      BIND_POSITIVE, .optional = true, .def = 100},
+    {"height", BIND_FLOAT, BIND_AT(camera_options, height),
+     "of what is seen without perspective; 0: with perspective", "m", BIND_NOT_NEGATIVE,
+     .optional = true},
     {0}};
 
 static const bind_arg light_fields[] = {
@@ -273,6 +434,12 @@ static const bind_arg light_fields[] = {
      BIND_BETWEEN, .max = 1.55, .optional = true, .def = 0.4},
     {"outer", BIND_FLOAT, BIND_AT(light_options, outer), "spot: half angle of any light", "rad",
      BIND_BETWEEN, .max = 1.57, .optional = true, .def = 0.5},
+    {"shadows", BIND_BOOL, BIND_AT(light_options, shadows), "casts shadows", .optional = true,
+     .def_text = "directional lights only", BIND_GIVEN(light_options, has_shadows)},
+    {"source", BIND_FLOAT, BIND_AT(light_options, source),
+     "for soft shadows: radius of the source in m, of a sun the tangent of its angular radius",
+     NULL, BIND_NOT_NEGATIVE, .optional = true, .def_text = "0.05, of a sun 0.00465",
+     BIND_GIVEN(light_options, has_source)},
     {0}};
 
 #define RGB_ARGS BIND_ARGS(COLOR_ARG(rgb_args, r), COLOR_ARG(rgb_args, g), COLOR_ARG(rgb_args, b))
@@ -306,6 +473,19 @@ static const bind_fn functions[] = {
                 .fields = light_fields}),
      BIND_RETURNS({"light", "corsac.Light", NULL}), sizeof(light_call), BIND_RUNNING, .mod = true,
      .cost = 500, .run = new_light},
+    {"newMaterial", "Makes a material.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(material_call, options), "the material",
+                .fields = material_fields}),
+     BIND_RETURNS({"material", "corsac.Material", NULL}), sizeof(material_call), BIND_RUNNING,
+     .mod = true, .cost = 500, .run = new_material},
+    {"setEnvironment", "Lights the world by a sky or a panorama, seen behind everything.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(environment_call, options), "the environment",
+                .fields = environment_fields}),
+     NULL, sizeof(environment_call), BIND_RUNNING, .run = set_environment},
+    {"set", "Changes a setting, as --set gfx.NAME=VALUE does.",
+     BIND_ARGS({"name", BIND_STRING, BIND_AT(setting_args, name), "such as shadows"},
+               {"value", BIND_STRING, BIND_AT(setting_args, value), "such as soft"}),
+     NULL, sizeof(setting_args), BIND_RUNNING, .run = set_setting},
     {"setRender", "How lights are assigned to what they light.",
      BIND_ARGS({"method", BIND_ENUM, BIND_AT(render_args, method), "", .values = RENDERS}), NULL,
      sizeof(render_args), BIND_RUNNING, .run = set_render},
@@ -332,6 +512,6 @@ static const bind_fn functions[] = {
 
 static const bind_module modules[] = {
     {"corsac.gfx", "Camera, lights and what is drawn over the frame.", functions}, {0}};
-static const bind_type *const types[] = {&bind_light_type, NULL};
+static const bind_type *const types[] = {&bind_light_type, &bind_material_type, NULL};
 
 const bind_room bind_gfx_room = {"gfx", modules, types};

@@ -1,6 +1,7 @@
 // corsac.scene: entities.
 #include "script/bind_anim.h"
 #include "script/bind_body.h"
+#include "script/bind_gfx.h"
 #include "script/bind_query.h"
 #include "script/internal.h"
 
@@ -13,7 +14,7 @@ typedef struct spawn_options {
     core_handle parent;
     bind_body_options body;
     const char *mesh, *name;
-    core_handle model, machine, clip;
+    core_handle model, machine, clip, material;
     float color[4];
     bool has_body, has_scale;
 } spawn_options;
@@ -51,6 +52,7 @@ static int spawn(script *s, lua_State *L, void *args) {
             bind_fail(L);
         }
         memcpy(draw.color, o->color, sizeof draw.color);
+        draw.material = o->material;
         desc.draw = &draw;
     }
     scene_entity e = scene_spawn(s->scene, &desc);
@@ -243,6 +245,8 @@ static const bind_arg spawn_fields[] = {
      .optional = true},
     {"color", BIND_COLOR, BIND_AT(spawn_options, color), "multiplies the material's",
      .optional = true, .def_vec = {1, 1, 1}},
+    {"material", BIND_OBJECT, BIND_AT(spawn_options, material), "of its mesh", .optional = true,
+     .def_text = "a plain white one", .type = &bind_material_type},
     {"model", BIND_OBJECT, BIND_AT(spawn_options, model), "shown in place of a mesh",
      .optional = true, .def_text = "nil", .type = &bind_model_type},
     {"machine", BIND_OBJECT, BIND_AT(spawn_options, machine), "state machine that moves the model",

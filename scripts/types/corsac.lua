@@ -217,6 +217,12 @@ local Light = {}
 ---@param z number
 function Light:setPosition(x, y, z) end
 
+---Turns a spot or directional light: where its light goes.
+---@param x number
+---@param y number
+---@param z number
+function Light:setDirection(x, y, z) end
+
 ---Changes colour and intensity.
 ---@param r number linear
 ---@param g number linear
@@ -226,6 +232,13 @@ function Light:setColor(r, g, b, intensity) end
 
 ---Removes the light.
 function Light:destroy() end
+
+---How a surface looks: metallic-roughness, as glTF.
+---@class corsac.Material
+local Material = {}
+
+---Removes the material: what has it is drawn in the plain one.
+function Material:destroy() end
 
 ---Meshes, skeleton and clips read from a file.
 ---@class corsac.Model
@@ -1018,6 +1031,7 @@ corsac.scene = {}
 ---@field body? corsac.scene.spawn.options.body its rigid body
 ---@field mesh? string "box", "sphere", "capsule", "cylinder" or "plane"; takes the size of the body
 ---@field color? number[] multiplies the material's
+---@field material? corsac.Material of its mesh
 ---@field model? corsac.Model shown in place of a mesh
 ---@field machine? corsac.Machine state machine that moves the model
 ---@field clip? corsac.Clip clip the model plays, without a machine
@@ -1188,6 +1202,7 @@ function corsac.gfx.setAmbient(r, g, b) end
 ---@field fov? number vertical field of view, rad
 ---@field near? number nearest visible distance, m
 ---@field far? number no point or spot light is seen beyond, m
+---@field height? number of what is seen without perspective; 0: with perspective, m
 
 ---Places the camera.
 ---@param options corsac.gfx.setCamera.options the camera
@@ -1221,11 +1236,53 @@ function corsac.gfx.getCamera() end
 ---@field radius? number point, spot: no light beyond, m
 ---@field inner? number spot: half angle of full light, rad
 ---@field outer? number spot: half angle of any light, rad
+---@field shadows? boolean casts shadows
+---@field source? number for soft shadows: radius of the source in m, of a sun the tangent of its angular radius
 
 ---Makes a light.
 ---@param options corsac.gfx.newLight.options the light
 ---@return corsac.Light light
 function corsac.gfx.newLight(options) end
+
+---@class corsac.gfx.newMaterial.options
+---@field baseColor? number[] linear, and coverage
+---@field metallic? number 0 or 1 but where things mix
+---@field roughness? number 0 is a mirror
+---@field emissive? number[] radiance sent out
+---@field alpha? "opaque"|"mask"|"blend" what coverage means
+---@field cutoff? number mask: least coverage that is drawn
+---@field doubleSided? boolean seen from behind too
+---@field normalScale? number of the normal map
+---@field occlusion? number strength of the occlusion map
+---@field baseColorMap? string image file, sRGB
+---@field normalMap? string image file, +Y up
+---@field metallicRoughnessMap? string image file: green rough, blue metallic
+---@field occlusionMap? string image file: red
+---@field emissiveMap? string image file, sRGB
+
+---Makes a material.
+---@param options corsac.gfx.newMaterial.options the material
+---@return corsac.Material material
+function corsac.gfx.newMaterial(options) end
+
+---@class corsac.gfx.setEnvironment.options
+---@field panorama? string equirectangular image file in place of the sky
+---@field intensity? number factor
+---@field zenith? number[] radiance from above
+---@field horizon? number[] radiance from the horizon
+---@field ground? number[] radiance from below
+---@field glow? number[] radiance round the sun
+---@field glowExponent? number the larger the narrower
+---@field sun? number[] direction to the sun
+
+---Lights the world by a sky or a panorama, seen behind everything.
+---@param options corsac.gfx.setEnvironment.options the environment
+function corsac.gfx.setEnvironment(options) end
+
+---Changes a setting, as --set gfx.NAME=VALUE does.
+---@param name string such as shadows
+---@param value string such as soft
+function corsac.gfx.set(name, value) end
 
 ---How lights are assigned to what they light.
 ---@param method "auto"|"forward"|"clustered"|"none"

@@ -1,0 +1,9 @@
+// Classes of corsac.gfx that other rooms' bindings take as arguments.
+#ifndef SCRIPT_BIND_GFX_H
+#define SCRIPT_BIND_GFX_H
+
+#include "script/bind.h"
+
+extern const bind_type bind_light_type, bind_material_type;
+
+#endif
