@@ -111,6 +111,7 @@ static bool call_mod(script_mod *m, mod_call *c, int64_t budget) {
         return false; // it does not hear what its own call set off
     }
     m->journal_count = m->made_count = 0;
+    m->text_used = 0;
     m->view->phase = m->game->phase;
     script_guard_begin(&m->guard, budget);
     bool good = lua_cpcall(L, run_call, c) == 0;
@@ -162,6 +163,18 @@ void script_mod_charge(script *s, lua_State *L, const bind_fn *fn) {
     }
 }
 
+// Lua may free a string before the change is made.
+static void keep_text(script_mod *m, lua_State *L, const char **text) {
+    size_t size = *text ? strlen(*text) + 1 : 0;
+    if (m->text_used + size > MOD_TEXT_BYTES) {
+        bind_error(L, "one call of a mod gives at most %d KiB of text", MOD_TEXT_BYTES >> 10);
+    }
+    if (size > 0) {
+        *text = memcpy(m->text + m->text_used, *text, size);
+        m->text_used += size;
+    }
+}
+
 bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_type *type,
                       core_handle self, const void *args, size_t size) {
     script_mod *m = s->as_mod;
@@ -170,7 +183,7 @@ bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_typ
         return false;
     }
     for (const bind_arg *arg = fn->args; arg && arg->name; arg++) {
-        if (arg->kind == BIND_STRING || arg->kind >= BIND_OPTIONS) {
+        if (arg->kind >= BIND_OPTIONS) {
             return false; // such arguments point into the state
         }
     }
@@ -180,6 +193,11 @@ bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_typ
     mod_change *c = &m->journal[m->journal_count++];
     *c = (mod_change){.fn = fn, .type = type, .self = self};
     memcpy(c->args, args, size);
+    for (const bind_arg *arg = fn->args; !fn->numbers && arg && arg->name; arg++) {
+        if (arg->kind == BIND_STRING) {
+            keep_text(m, L, (const char **)(void *)(c->args + arg->at));
+        }
+    }
     return true;
 }
 
@@ -419,6 +437,7 @@ static void destroy_mod(script_mod *m) {
         core_free(m->view);
     }
     core_free(m->journal);
+    core_free(m->text);
     core_free(m->made);
     core_free(m);
 }
@@ -471,6 +490,7 @@ bool script_add_mod(script *game, const char *dir) {
     m->enabled = true;
     snprintf(m->dir, sizeof m->dir, "%s", dir);
     m->journal = core_alloc(MOD_JOURNAL_MAX * sizeof *m->journal);
+    m->text = core_alloc(MOD_TEXT_BYTES);
     m->view = core_alloc(sizeof *m->view);
     m->view->scene = game->scene;
     m->view->as_mod = m;

@@ -7,7 +7,13 @@
 #include "script/guard.h"
 #include "script/pack.h"
 
-enum { MOD_STRIKES = 3, MOD_LOG_LINES = 200, MOD_JOURNAL_MAX = 4096, MOD_ARGS_BYTES = 128 };
+enum {
+    MOD_STRIKES = 3,
+    MOD_LOG_LINES = 200,
+    MOD_JOURNAL_MAX = 4096,
+    MOD_ARGS_BYTES = 128,
+    MOD_TEXT_BYTES = 32 << 10
+};
 
 // A change of the simulation that waits for the end of the mod's call.
 typedef struct mod_change {
@@ -36,6 +42,8 @@ typedef struct script_mod {
     uint64_t instructions, calls; // all calls so far
     mod_change *journal;
     int journal_count;
+    char *text; // [MOD_TEXT_BYTES] strings of the journal
+    size_t text_used;
     mod_made *made;
     int made_count, made_capacity;
     uint32_t owned[32]; // objects made so far, by class

@@ -243,6 +243,7 @@ static const attempt attempts[] = {
     {"destroy, then fail", "corsac.scene.find('door'):destroy() error('end')"},
     {"move, then loop", "corsac.scene.find('door'):setPosition(9, 9, 9) while true do end"},
     {"spawn, then loop", "corsac.scene.spawn{body = {shape = 'sphere'}} while true do end"},
+    {"collision rule, then fail", "corsac.phys.setCollisionRule('a', 'b', false) error('end')"},
     {"random of the simulation", "for i = 1, 100 do math.random() end error('end')"},
     // services and data
     {"closure to a service", "corsac.mod.call('bank.add', function() end)"},
@@ -331,6 +332,27 @@ static void test_the_kill_falls_at_the_same_instruction_in_every_run(void) {
     TEST_ASSERT_EQUAL_UINT64(instructions[0], instructions[1]);
 }
 
+static bool takes_function(const bind_arg *args) {
+    for (const bind_arg *a = args; a && a->name; a++) {
+        if (a->kind == BIND_FUNCTION || takes_function(a->fields)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A room would call it outside the guard. What scripts/corsac keeps is called by its guarded tick.
+static void test_no_room_takes_a_function_from_a_mod(void) {
+    for (int r = 0; bind_rooms[r]; r++) {
+        for (const bind_module *m = bind_rooms[r]->modules; m->path; m++) {
+            for (const bind_fn *fn = m->functions; fn->name; fn++) {
+                bool room = fn->run && !fn->mod_only;
+                TEST_ASSERT_FALSE_MESSAGE(room && fn->mod && takes_function(fn->args), fn->name);
+            }
+        }
+    }
+}
+
 static void test_code_that_is_no_text_and_broken_manifests_are_left_out(void) {
     static const char *const manifests[] = {"return 3",
                                             "return {}",
@@ -359,6 +381,7 @@ int main(void) {
     RUN_TEST(test_what_could_open_a_door_is_not_there);
     RUN_TEST(test_a_mod_that_goes_over_its_budget_again_and_again_is_switched_off);
     RUN_TEST(test_the_kill_falls_at_the_same_instruction_in_every_run);
+    RUN_TEST(test_no_room_takes_a_function_from_a_mod);
     RUN_TEST(test_code_that_is_no_text_and_broken_manifests_are_left_out);
     return UNITY_END();
 }
