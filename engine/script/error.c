@@ -117,6 +117,9 @@ bool script_protected(script *s, lua_State *L, int argc, int results) {
 }
 
 bool script_call(script *s, uint32_t phase, int argc, int results) {
+    if (s->as_mod) {
+        return script_mod_callback(s->as_mod, phase, argc, results);
+    }
     uint32_t before = s->phase;
     s->phase = phase;
     s->callback_count++;

@@ -2,6 +2,7 @@
 
 #include "script/bind_body.h"
 #include "script/bind_region.h"
+#include "script/mod.h"
 
 #define SWEEP_EVERY 256 // functions given to bodies between two searches for dead ones
 
@@ -150,7 +151,7 @@ static bool on_contact(script *s, const phys_event *e, phys_body self, phys_body
     return call(s, 6);
 }
 
-void script_step_events(script *s) {
+static void tell(script *s) {
     phys_world *world = scene_phys_if(s->scene);
     uint32_t count = 0;
     const phys_event *event = world ? phys_world_events(world, &count) : NULL;
@@ -174,5 +175,14 @@ void script_step_events(script *s) {
         push_table(L, &callback_keys[SCRIPT_ON_TRIGGER]);
         drop_gone(L, lua_gettop(L), gone);
         lua_pop(L, 1);
+    }
+}
+
+void script_step_events(script *s) {
+    tell(s);
+    for (int i = 0; i < s->mod_count; i++) {
+        if (s->mods[i]->started && s->mods[i]->enabled) {
+            tell(s->mods[i]->view);
+        }
     }
 }

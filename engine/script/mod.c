@@ -104,31 +104,55 @@ static void strike(script_mod *m) {
     }
 }
 
-// Calls into the mod; what it changed is applied when it ends well and dropped when it does not.
-static bool call_mod(script_mod *m, mod_call *c, int64_t budget) {
-    lua_State *L = m->view->L;
+// Every way into a mod lies between begin and finish. What the call changed is made real when it
+// ended well and dropped when it did not. False: the mod is inside a call of its own, and does not
+// hear what that call set off.
+static bool begin_call(script_mod *m, int64_t budget) {
     if (m->guard.running) {
-        return false; // it does not hear what its own call set off
+        return false;
     }
     m->journal_count = m->made_count = 0;
     m->text_used = 0;
     m->view->phase = m->game->phase;
     script_guard_begin(&m->guard, budget);
-    bool good = lua_cpcall(L, run_call, c) == 0;
+    return true;
+}
+
+// The error text of a call that failed is on top of the stack, and popped.
+static bool finish_call(script_mod *m, bool good) {
+    lua_State *L = m->view->L;
     m->instructions += (uint64_t)script_guard_end(&m->guard);
     m->calls++;
-    bool killed = m->guard.killed;
-    if (!good || killed) {
-        if (!good) {
-            script_mod_report(m->view, L);
-        }
+    if (!good) {
+        script_mod_report(m->view, L);
+    }
+    good = good && !m->guard.killed;
+    if (!good) {
         lua_cpcall(L, unmake, m);
     } else if (lua_cpcall(L, apply_changes, m) != 0) {
         script_mod_report(m->view, L);
     }
-    lua_settop(L, 0);
     strike(m);
-    return good && !killed;
+    return good;
+}
+
+static bool call_mod(script_mod *m, mod_call *c, int64_t budget) {
+    if (!begin_call(m, budget)) {
+        return false;
+    }
+    bool good = finish_call(m, lua_cpcall(m->view->L, run_call, c) == 0);
+    lua_settop(m->view->L, 0);
+    return good;
+}
+
+bool script_mod_callback(script_mod *m, uint32_t phase, int argc, int results) {
+    lua_State *L = m->view->L;
+    if (!m->enabled || !begin_call(m, GUARD_CALL)) {
+        lua_pop(L, argc + 1);
+        return false;
+    }
+    m->view->phase = phase;
+    return finish_call(m, lua_pcall(L, argc, results, 0) == 0);
 }
 
 // ---- the gate of its bindings ----
@@ -495,6 +519,7 @@ bool script_add_mod(script *game, const char *dir) {
     m->view->scene = game->scene;
     m->view->as_mod = m;
     m->view->headless = game->headless;
+    m->view->keep_going = true; // strikes switch a mod off, single errors do not
     m->view->phase = BIND_TOP;
     bool good = core_vfs_mount(files, dir, "", false);
     m->view->L = good ? script_guard_state(&m->guard) : NULL;

@@ -60,6 +60,9 @@ void script_mods_event(script *game, const char *name, bool before, const script
 void script_mods_filter(script *game, const char *name, script_pack *value);
 void script_mods_tick(script *game); // tasks of mods
 
+// Calls the function of a mod's state under `argc` arguments behind the guard: how rooms call back.
+bool script_mod_callback(script_mod *m, uint32_t phase, int argc, int results);
+
 // Gate of every binding that a mod calls: charges it, checks quotas. Raises Lua errors.
 void script_mod_charge(script *s, lua_State *L, const bind_fn *fn);
 // True when the call was put off to the end of the mod's call.

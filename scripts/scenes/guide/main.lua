@@ -35,8 +35,9 @@ end
 
 local function addFox()
     local model = anim.loadModel("models/fox.cmodel")
+    local walker = scene.spawn{ position = { -6, 0, 4 } } -- agents look along -Z, the model along +Z
     fox = scene.spawn{
-        model = model, position = { -6, 0, 4 },
+        model = model, parent = walker, rotation = { axis = { 0, 1, 0 }, angle = math.pi },
         machine = anim.newMachine{
             initial = "idle", parameters = { speed = 0 },
             states = {
@@ -53,7 +54,7 @@ local function addFox()
     local a, b, c = graph:add(-6, 0, 4), graph:add(-3, 0, 1), graph:add(0, 0, 0)
     graph:connect(a, b)
     graph:connect(b, c)
-    agent = nav.newAgent{ entity = fox, maxSpeed = 1.2, turnRate = 6 }
+    agent = nav.newAgent{ entity = walker, maxSpeed = 1.2, turnRate = 6 }
     agent:go(graph, 0, 0, 0)
 end
 
