@@ -263,10 +263,9 @@ static bool combination_ok(const app_options *o) {
     if (o->replay && o->record) {
         return core_fail("corsac run: --record and --replay exclude each other");
     }
-    if (o->replay && (o->has_seed || o->dt > 0 || o->set_count || o->substeps || o->mod_count)) {
-        return core_fail(
-            "corsac run: --replay takes seed, dt, settings and mods from the recording; "
-            "leave out --seed, --dt, --set, --substeps and --mod");
+    if (o->replay && (o->has_seed || o->dt > 0 || o->set_count || o->substeps)) {
+        return core_fail("corsac run: --replay takes seed, dt and settings from the recording; "
+                         "leave out --seed, --dt, --set and --substeps");
     }
     return true;
 }

@@ -98,6 +98,19 @@ class Replay(SceneCase):
         self.file.write_bytes(other)
         self.assert_exit(self.replay(BALLS), 0)
 
+    def test_mods_are_known_by_what_is_in_them(self):
+        mod = self.dir / "mods/cheese"
+        self.write("mods/cheese/mod.lua", 'return { name = "cheese", version = "1" }')
+        self.write("mods/cheese/main.lua", "-- version one")
+        self.record(BALLS, "--steps", 3, "--mod", mod)
+        done = self.replay(BALLS, "--mod", mod)
+        self.assert_exit(done, 0)
+        self.assertNotIn("warning", done.err)
+        self.assertIn("'mod cheese/main.lua' is not the file that was recorded, or missing", self.replay(BALLS).err)
+        self.write("mods/cheese/main.lua", "-- version two")
+        self.assertIn("'mod cheese/main.lua' is not the file that was recorded", self.replay(BALLS, "--mod", mod).err)
+        self.assertNotIn(str(mod).encode(), self.file.read_bytes())
+
     def test_options_that_contradict_the_recording(self):
         self.record(BALLS, "--steps", 3)
         scene = self.write("scene.lua", BALLS)
