@@ -65,10 +65,15 @@ typedef struct app_run {
 app_run *app_run_create(const app_options *opt);
 bool app_run_open(app_run *r); // files, scene, outputs
 int app_run_destroy(app_run *r);
-bool app_scene_open(app_run *r);  // false: r->failed says why
-void app_scene_close(app_run *r); // quit callback, expectations
 bool app_interrupted(void);
 bool app_fail(app_run *r, app_exit why); // keeps the first; false
+// start.c
+bool app_start_read(app_run *r);          // into r->start; false: r->failed says why
+void app_start_compare_files(app_run *r); // hashes them; warns where a recording has others
+// session.c
+bool app_scene_open(app_run *r);  // false: r->failed says why
+void app_scene_close(app_run *r); // quit callback, expectations
+void app_end_of_run(app_run *r);  // sets r->last_step
 // host.c
 script_host app_host(app_run *r);
 // loop.c
