@@ -7,7 +7,9 @@ int app_command_new(int argc, const char *const *argv);
 int app_command_convert(int argc, const char *const *argv);
 int app_command_info(int argc, const char *const *argv);
 int app_command_compare(int argc, const char *const *argv);
+int app_command_doctor(int argc, const char *const *argv);
 int app_command_lab(int argc, const char *const *argv);
+int app_command_tune(int argc, const char *const *argv);
 int app_command_lab_run(int argc, const char *const *argv);
 
 #endif

@@ -18,7 +18,11 @@ static const command commands[] = {
     {"info", "", "versions, instruction sets, graphics", app_command_info},
     {"compare", "SCENE --a NAME=VALUE... --b ...", "a scene twice: mm and ms apart, a picture",
      app_command_compare},
+    {"doctor", "SCENE [options of run]", "what in a scene its methods cannot hold",
+     app_command_doctor},
     {"lab", "[NAME...] [--quick] [--out DIR]", "chart speed against accuracy", app_command_lab},
+    {"tune", "SCENE --error 'METRIC<=VALUE' ...", "the cheapest settings that keep the bounds",
+     app_command_tune},
     {"lab-run", "NAME [--case JSON]", "run one lab kernel on one case", app_command_lab_run},
 };
 

@@ -146,7 +146,8 @@ static bool run_frame(const core_lab_case *c, core_json *out) {
     frame_run r = {.ok = core_vfs_mount(vfs, core_lab_text(c, "assets", "assets"), "", false)};
     r.device = r.ok ? gfx_device_create(&desc) : NULL;
     r.world = r.device ? lab_world(c) : NULL;
-    if (r.world && gfx_world_set(r.world, "render", core_lab_text(c, "method", "clustered"))) {
+    if (r.world && gfx_world_set(r.world, "render", core_lab_text(c, "method", "clustered")) &&
+        gfx_world_set(r.world, "assign", core_lab_text(c, "assign", "simd"))) {
         add_boxes(r.world);
         draw(&r); // compiles
         if (r.ok && core_lab_number(c, "timed", 0) > 0) {
@@ -165,6 +166,8 @@ static bool run_frame(const core_lab_case *c, core_json *out) {
     return r.ok;
 }
 
-const core_lab_kernel gfx_lab_frame = {
-    "gfx.frame", "wall time of one frame, plain forward or clustered",
-    "method: forward|clustered; n, radius, width, height, runs, assets, timed", run_frame};
+const core_lab_kernel gfx_lab_frame = {"gfx.frame",
+                                       "wall time of one frame, plain forward or clustered",
+                                       "method: forward|clustered; assign: naive|per_light|simd; "
+                                       "n, radius, width, height, runs, assets, timed",
+                                       run_frame};

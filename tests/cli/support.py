@@ -21,9 +21,9 @@ class Result:
         return f"exit {self.code}\n--- stdout\n{self.out}\n--- stderr\n{self.err}"
 
 
-def corsac(*args, window=False, limit=120, env=None, cwd=ROOT):
+def corsac(*args, window=False, limit=120, env=None, cwd=ROOT, program=CORSAC):
     """Runs `corsac ARGS`; with window=True under xvfb-run, or skips the test where that is missing."""
-    command = [CORSAC, *map(str, args)]
+    command = [str(program), *map(str, args)]
     if window:
         if not shutil.which("xvfb-run"):
             raise unittest.SkipTest("xvfb-run is not installed")

@@ -3,6 +3,7 @@
   corsac lab [NAME...] [--out DIR] [--jobs N] [--scheduler ADDRESS]
 
 Without names all experiments of scripts/lab/ run; --quick runs the quick set with its short sweeps.
+`corsac lab report` draws the figures of the report that the engine grew from, beside what it states.
 """
 
 import argparse
@@ -30,6 +31,8 @@ def arguments(argv):
     parser.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler for accuracy runs")
     parser.add_argument("--quick", action="store_true", help="the quick set with short sweeps")
     parser.add_argument("--no-timing", action="store_true", help="accuracy only")
+    parser.add_argument("--experiments", default=ROOT / "scripts/lab", type=Path,
+                        help="folder of experiment files (default scripts/lab)")
     parser.add_argument("--list", action="store_true", help="list the experiments")
     parser.add_argument("--corsac", default=os.environ.get("CORSAC", str(ROOT / "build/corsac")), help="the program")
     return parser.parse_args(argv)
@@ -44,8 +47,10 @@ def machine_facts():
 
 def load_all(args):
     """(experiments, problems): a file that cannot be read is a problem, not the end."""
-    files = sorted((ROOT / "scripts/lab").glob("*.toml"))
+    files = sorted(args.experiments.glob("*.toml"))
     known = [f.stem for f in files]
+    if args.names == ["report"]:
+        args.names = [name for name in known if name.startswith("report_")]
     for name in args.names:
         if name not in known:
             print(f"corsac lab: no experiment '{name}'; known: {', '.join(known)}", file=sys.stderr)
@@ -70,7 +75,8 @@ def rows_of(exp, accuracy, timing):
         runs = accuracy[index * len(exp.seeds):(index + 1) * len(exp.seeds)]
         error = judge.summary([r.get(exp.error.get("key")) for r in runs])
         cost = judge.summary([r.get(exp.cost.get("key")) for r in timing[index]]) if timing else None
-        rows.append({"method": label, "point": point, "error": error, "cost": cost,
+        settings = {k: v for k, v in exp.params(label, point, 0).items() if k != "seed" and k not in exp.fixed}
+        rows.append({"method": label, "point": point, "settings": settings, "error": error, "cost": cost,
                      "figures": {**runs[0], **({} if not timing else timing[index][0])}})
     return rows
 
@@ -83,7 +89,7 @@ def program_of(args, exp, label):
 
 def run_experiment(args, exp, client):
     folder = args.out / exp.name
-    cases = runner.Cases(folder, runner.program_digest(args.corsac))
+    cases = runner.Cases(folder, exp.scene and ROOT / exp.scene)
 
     def commands(seeds, timed):
         return [runner.command_of(program_of(args, exp, label), exp, exp.params(label, point, seed), timed)
@@ -106,7 +112,7 @@ def run_experiment(args, exp, client):
 
 def run_map(args, exp, client):
     import maps
-    cases = runner.Cases(args.out / exp.name, runner.program_digest(args.corsac))
+    cases = runner.Cases(args.out / exp.name, exp.scene and ROOT / exp.scene)
 
     def run(params):
         words = [runner.command_of(args.corsac, exp, p, False) for p in params]
@@ -147,8 +153,8 @@ def finish(args, results, problems):
         exp = result["experiment"]
         bad = [p for _, found in result["checks"] for p in found]
         short += bool(bad or result["broken"])
-        print(f"{'FELL SHORT' if bad else 'BROKEN' if result['broken'] else 'ok':10} {exp.name}: {result['sentence']}")
-        for line in (bad + result["broken"])[:6]:
+        print(f"{'BROKEN' if result['broken'] else 'FELL SHORT' if bad else 'ok':10} {exp.name}: {result['sentence']}")
+        for line in (result["broken"][:3] + bad)[:6]:
             print(f"           {line}")
     for problem in problems:
         print(f"BROKEN     {problem}")

@@ -107,6 +107,10 @@ def draw_line(ax, exp, rows):
                 ax.plot(*zip(*points), markersize=5, linewidth=1, **style(exp, label))
         if min(values) > 0:
             ax.set_xscale("log")
+        for mark in exp.stated:
+            ax.plot([mark["x"]], [mark["y"]], "k*", markersize=9)
+            ax.annotate(mark["text"], (mark["x"], mark["y"]), fontsize=7, xytext=(-4, 6), textcoords="offset points",
+                        ha="right")
     ax.set(xlabel=exp.chart["x"], ylabel=axis_label(what))
     if not exp.chart.get("linear"):
         ax.set_yscale("log")

@@ -15,6 +15,7 @@ seeds, repeats        of accuracy and of timing
 [[expect]]            assertions, see judge.py
 [map]                 a stability map, see maps.py
 reference             name in references.py: adds figures by a known answer
+stated                [{x, y, text}]: figures that others state, drawn as stars on a line chart
 [binaries]            NAME = path of another build; a method takes it by `binary = NAME`
 """
 
@@ -25,7 +26,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 KNOWN = {"title", "question", "kernel", "scene", "quick", "docs", "fixed", "methods", "sweep", "quick_sweep",
-         "error", "cost", "seeds", "repeats", "chart", "expect", "map", "binaries", "reference"}
+         "error", "cost", "seeds", "repeats", "chart", "expect", "map", "binaries", "reference", "stated"}
 
 
 class BadExperiment(Exception):
@@ -54,6 +55,7 @@ class Experiment:
     digest: str
     binaries: dict = field(default_factory=dict)
     reference: str | None = None
+    stated: list = field(default_factory=list)
     shortened: bool = False  # has a [quick_sweep]
 
     def points(self):
@@ -100,4 +102,5 @@ def load(path, quick=False):
         repeats=raw.get("repeats", 3), chart=raw.get("chart", {}), expect=raw.get("expect", []),
         map=raw.get("map", {}), quick=raw.get("quick", False), docs=raw.get("docs", False),
         digest=hashlib.sha256(text).hexdigest()[:16], binaries=raw.get("binaries", {}),
-        reference=raw.get("reference"), shortened="quick_sweep" in raw)
+        reference=raw.get("reference"), stated=raw.get("stated", []),
+        shortened="quick_sweep" in raw)

@@ -3,7 +3,8 @@
 Expectations ([[expect]] in an experiment), each with optional `where = {sweep = value}`:
   kind = "bound"       key, op (<= < >= > ==), value; method (default all): every row holds it
   kind = "order"       method, over (sweep name), order, tolerance; lo, hi: range of the fit
-  kind = "equal"       key: one value over all methods at each sweep point
+  kind = "equal"       key: one value over all methods (or those of the list `methods`) at each sweep point
+  kind = "differ"      key, method, to: the figure differs at one sweep point at least
   kind = "better"      method, to, key, factor: method's figure * factor <= the other's, at each point
   kind = "never_loses" method, to, below: at every error <= below that `to` reaches, method is no dearer
   kind = "monotone"    method, over: the error never rises as the sweep value falls
@@ -90,10 +91,19 @@ def check_order(rows, rule):
 def check_equal(rows, rule):
     groups = {}
     for row in chosen(rows, rule, rule.get("method")):
+        if row["method"] not in rule.get("methods", [row["method"]]):
+            continue
         groups.setdefault(str(row["point"]), []).append((row["method"], figure(row, rule["key"])))
     for point, values in groups.items():
         if len({v for _, v in values}) != 1:
             yield f"{rule['key']} at {point} differs: {values}"
+
+
+def check_differ(rows, rule):
+    other = {str(r["point"]): figure(r, rule["key"]) for r in chosen(rows, rule, rule["to"])}
+    mine = [(figure(r, rule["key"]), other.get(str(r["point"]))) for r in chosen(rows, rule, rule["method"])]
+    if all(a == b for a, b in mine):
+        yield f"{rule['method']} and {rule['to']} have the same {rule['key']} at every point"
 
 
 def check_better(rows, rule):
@@ -124,7 +134,7 @@ def check_monotone(rows, rule):
 
 def check(exp, rows):
     """(rule, problems) for every expectation."""
-    table = {"bound": check_bound, "order": check_order, "equal": check_equal, "better": check_better,
+    table = {"bound": check_bound, "order": check_order, "equal": check_equal, "differ": check_differ, "better": check_better,
              "never_loses": check_never_loses, "monotone": check_monotone}
     for rule in exp.expect:
         if rule.get("kind") not in table:
@@ -140,13 +150,48 @@ def amount(value, unit):
     for scale, prefix in ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1, "")):
         if unit in ("m", "s", "J", "rad") and abs(value) < scale * 1000 and value:
             return f"{value / scale:.3g} {prefix}{unit}"
-    return f"{value:.3g} {unit}"
+    return f"{value:.3g} {unit}".strip()
 
 
-def sentence(exp, rows):
-    """One plain sentence: at an error that several methods reach, who is cheapest and by how much."""
-    if not exp.chart.get("sentence", True):
-        return ""
+def parts_of(exp, rows):
+    """[(name of the panel, its rows)]."""
+    name = exp.chart.get("panel")
+    if not name:
+        return [("", rows)]
+    def shown(v):
+        return v if isinstance(v, str) else f"step 1/{round(1 / v)} s" if name == "dt" else f"{name} {v:.4g}"
+
+    return [(f"{shown(v)}: ", [r for r in rows if r["point"].get(name) == v])
+            for v in exp.sweep[name]]
+
+
+def line_sentence(exp, rows):
+    """At the last point of the sweep (of names, the first): who is cheapest, and how much dearer the dearest is."""
+    axis, unit = exp.chart["x"], exp.cost.get("unit", "")
+    end = exp.sweep[axis][0 if isinstance(exp.sweep[axis][0], str) else -1]
+    parts = []
+    for title, mine in parts_of(exp, rows):
+        costs = sorted((r["cost"]["median"], r["method"]) for r in mine if r["point"][axis] == end and r["cost"])
+        if len(costs) > 1 and costs[0][0] > 0:
+            parts.append(f"{title}{costs[0][1]} {amount(costs[0][0], unit)}, {costs[-1][1]} "
+                         f"{costs[-1][0] / costs[0][0]:.3g} times that")
+    return f"At {axis} {end}, {exp.cost.get('label', 'cost')}: {'; '.join(parts)}." if parts else ""
+
+
+def scatter_sentence(exp, rows):
+    """Over all points: the worst error and the median cost of each method."""
+    parts = []
+    for label in exp.methods:
+        errors = [r["error"]["median"] for r in rows if r["method"] == label and r["error"]]
+        costs = [r["cost"]["median"] for r in rows if r["method"] == label and r["cost"]]
+        if errors and costs:
+            parts.append(f"{label}: worst {amount(max(errors), exp.error.get('unit', ''))}, "
+                         f"median {amount(statistics.median(costs), exp.cost.get('unit', ''))}")
+    return "; ".join(parts) + "." if parts else ""
+
+
+def front_sentence(exp, rows):
+    """At an error that several methods reach, who is cheapest and by how much."""
     reach = {}
     for row in rows:
         if row["error"] and row["cost"]:
@@ -156,8 +201,22 @@ def sentence(exp, rows):
     level = max(min(errors) for errors in reach.values())
     costs = sorted((cheapest([r for r in rows if r["method"] == m], level), m) for m in reach)
     (best, who), (worst, last) = costs[0], costs[-1]
-    error = amount(level, exp.error.get("unit", ""))
+    unit = exp.error.get("unit", "")
+    error = f"{amount(level, unit)} {exp.error.get('label', 'error')}"
     if level == 0:
         error = f"no {exp.error.get('label', 'error')} at all"
-    return (f"At {error} {'' if level == 0 else exp.error.get('label', 'error')}, {who} costs "
-            f"{amount(best, exp.cost.get('unit', ''))}: {worst / best:.1f} times less than {last}.") if best else ""
+    return (f"at {error}, {who} costs {amount(best, exp.cost.get('unit', ''))}: "
+            f"{worst / best:.3g} times less than {last}") if best else ""
+
+
+def sentence(exp, rows):
+    """What a chart says, in plain words."""
+    if not exp.chart.get("sentence", True) or not exp.error or not exp.cost:
+        return ""
+    if "x" in exp.chart:
+        return line_sentence(exp, rows)
+    if exp.chart.get("scatter"):
+        return scatter_sentence(exp, rows)
+    parts = [title + text for title, mine in parts_of(exp, rows) if (text := front_sentence(exp, mine))]
+    text = "; ".join(parts)
+    return text[:1].upper() + text[1:] + "." if text else ""

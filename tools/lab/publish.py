@@ -1,4 +1,5 @@
-"""What `make docs` takes over from out/lab: charts into docs/charts, maps into assets/stability.
+"""What `make docs` takes over from out/lab: charts into docs/charts, maps and the contact solvers'
+fronts into assets/stability.
 
 Each experiment with `docs = true` whose result is there and belongs to the present experiment file is
 copied, its digest recorded; `stale()` names those whose committed chart or map is of another file.
@@ -43,7 +44,7 @@ def stale():
         elif is_map and files[1].exists() and json.loads(files[1].read_text()).get("digest") != digest:
             yield f"assets/stability/{name}.json: scripts/lab/{name}.toml has changed since"
     for file in [*(ROOT / "docs/charts").glob("*.svg"), *(ROOT / "assets/stability").glob("*.json")]:
-        if file.stem not in names:
+        if file.stem not in names and file.name != "fronts.json":
             yield f"{file.relative_to(ROOT)}: no experiment of that name with `docs = true`"
 
 
@@ -57,11 +58,22 @@ def compact(result):
     return text + ",\n".join(methods) + "\n }\n}\n"
 
 
+def front_rows(result):
+    """What `corsac tune` searches: the settings of a front at the default step, their error and cost."""
+    return [{"settings": {k: v for k, v in r["settings"].items() if k != "dt"}, "error": r["error"]["median"],
+             "cost": r["cost"]["median"]} for r in result["rows"]
+            if r["error"] and r["cost"] and abs(60 * r["settings"].get("dt", 1 / 60) - 1) < 1e-3]
+
+
 def publish(out):
+    if not out.is_dir():
+        return  # no lab run here: what is committed stays
     index_path = ROOT / "docs/charts/index.json"
     index = json.loads(index_path.read_text()) if index_path.exists() else {}
     index_path.parent.mkdir(parents=True, exist_ok=True)
     (ROOT / "assets/stability").mkdir(parents=True, exist_ok=True)
+    fronts_path = ROOT / "assets/stability/fronts.json"
+    fronts = json.loads(fronts_path.read_text()) if fronts_path.exists() else {}
     known = {name for name, _, _ in chosen()}
     index = {name: entry for name, entry in index.items() if name in known}
     for name, digest, is_map in chosen():
@@ -72,8 +84,11 @@ def publish(out):
             continue
         shutil.copy(folder / f"{name}.svg", ROOT / f"docs/charts/{name}.svg")
         index[name] = {"digest": digest, "title": result["title"], "sentence": result.get("sentence", "")}
+        if name.startswith("contact_"):
+            fronts[name] = front_rows(result)
         if is_map:
             (ROOT / f"assets/stability/{name}.json").write_text(compact(result))
+    fronts_path.write_text(json.dumps({k: fronts[k] for k in sorted(fronts) if k in known}, indent=1) + "\n")
     index_path.write_text(json.dumps(index, indent=1, sort_keys=True, ensure_ascii=False) + "\n")
 
 

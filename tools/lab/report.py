@@ -30,6 +30,7 @@ def section(result):
         out.append(f"<img src='{exp.name}/{exp.name}.svg' alt='{html.escape(exp.title)}'>")
     if result["sentence"]:
         out.append(f"<p><b>{html.escape(result['sentence'])}</b></p>")
+    out += [f"<p>stated by others: {html.escape(m['text'])}: {m['y']:g} at {m['x']:g}</p>" for m in exp.stated]
     for rule, problems in result["checks"]:
         words = html.escape(", ".join(f"{k} {v}" for k, v in rule.items()))
         mark = "<span class='bad'>fell short</span>" if problems else "<span class='good'>holds</span>"

@@ -7,10 +7,14 @@ so that an interrupted run goes on where it stopped.
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def command_of(corsac, exp, params, timed):
@@ -22,7 +26,7 @@ def command_of(corsac, exp, params, timed):
             case["timed"] = 1
         return [corsac, "lab-run", exp.kernel, "--case", json.dumps(case, sort_keys=True)]
     length = ["--seconds", str(params["seconds"])] if "seconds" in params else ["--steps", str(params.get("steps", 600))]
-    words = [corsac, "run", exp.scene, "--headless", "--quiet", "--metrics", "-",
+    words = [corsac, "run", str(ROOT / exp.scene), "--headless", "--quiet", "--metrics", "-",
              "--threads", str(params.get("threads", 1)), "--simd", params.get("simd", "auto"),
              "--seed", str(params["seed"]), *length]
     for key in ("substeps", "dt"):
@@ -45,6 +49,13 @@ def flatten(tree, prefix=""):
     return flat
 
 
+def read_figures(text):
+    """The figures of a program's JSON. A build with -ffast-math cannot tell what is no number and
+    writes nan where null belongs: `json_mended` counts those."""
+    mended, count = re.subn(r"(?<=[\s:,])-?(nan|inf)(?=[\s,}])", "null", text)
+    return {**flatten(json.loads(mended)), **({"json_mended": count} if count else {})}
+
+
 def execute(words, timeout=600):
     """One process: its JSON figures, with the CPU time it took; {"broken": why} when it failed."""
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -57,7 +68,7 @@ def execute(words, timeout=600):
         last = (err.strip().splitlines() or ["no message"])[-1]
         return {"broken": f"exit {process.returncode}: {last} ({' '.join(words)})"}
     try:
-        return flatten(json.loads(out))
+        return read_figures(out)
     except json.JSONDecodeError:
         return {"broken": f"printed no JSON: {' '.join(words)}"}
 
@@ -70,7 +81,7 @@ def execute_timed(words):
         process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
         return {"broken": f"exit {process.returncode}: {' '.join(words)}"}
-    figures = flatten(json.loads(out))
+    figures = read_figures(out)
     if figures.get("steps"):
         figures["cpu_ms_per_step"] = 1e3 * (usage.ru_utime + usage.ru_stime) / figures["steps"]
         figures["cpu_ms_per_s"] = figures["cpu_ms_per_step"] / figures["dt"]
@@ -99,21 +110,28 @@ class Progress:
 class Cases:
     """The store of finished cases of one experiment."""
 
-    def __init__(self, folder, program):
+    def __init__(self, folder, scene=None):
         self.path = folder / "cases.jsonl"
-        self.program = program
+        self.scene = scene
+        self.digests = {}  # of programs
         self.known = {}
         folder.mkdir(parents=True, exist_ok=True)
-        if self.path.exists():
-            for line in self.path.read_text().splitlines():
-                try:
-                    entry = json.loads(line)
-                    self.known[entry["id"]] = entry["figures"]
-                except (json.JSONDecodeError, KeyError):
-                    continue  # the last line of an interrupted run
+        text = self.path.read_text() if self.path.exists() else ""
+        for line in text.splitlines():
+            try:
+                entry = json.loads(line)
+                self.known[entry["id"]] = entry["figures"]
+            except (json.JSONDecodeError, KeyError):
+                continue  # the last line of an interrupted run
+        if text and not text.endswith("\n"):
+            self.path.write_text(text[:text.rfind("\n") + 1])
 
     def id_of(self, words, tag):
-        return hashlib.sha256(json.dumps([self.program, tag, words[1:]]).encode()).hexdigest()[:20]
+        program = words[0]
+        if program not in self.digests:
+            self.digests[program] = program_digest(program, self.scene)
+        plain = [w.replace(str(ROOT), "") for w in words[1:]]
+        return hashlib.sha256(json.dumps([self.digests[program], tag, plain]).encode()).hexdigest()[:20]
 
     def get(self, words, tag):
         return self.known.get(self.id_of(words, tag))
@@ -121,14 +139,20 @@ class Cases:
     def put(self, words, tag, figures):
         key = self.id_of(words, tag)
         self.known[key] = figures
+        if "broken" in figures:
+            return  # tried again by the next run
         with self.path.open("a") as file:
             file.write(json.dumps({"id": key, "figures": figures}) + "\n")
 
 
-def program_digest(corsac):
-    """Cases of another build are not reused."""
-    with open(corsac, "rb") as file:
-        return hashlib.sha256(file.read()).hexdigest()[:16]
+def program_digest(corsac, scene=None):
+    """Cases of another build or another text of the scene are not reused."""
+    digest = hashlib.sha256()
+    for path in (corsac, scene):
+        if path:
+            with open(path, "rb") as file:
+                digest.update(file.read())
+    return digest.hexdigest()[:16]
 
 
 def run_all(words_list, cases, jobs, client, title):
