@@ -16,6 +16,7 @@
 #define ANIM_MAX_STATES     256u
 #define ANIM_MAX_PARAMETERS 16u // per machine
 #define ANIM_MAX_EVENTS     32u // names that transitions of one machine listen to
+#define ANIM_MAX_LAYERS     3u  // above the base
 #define ANIM_PALETTE_FLOATS 12u // 3x4 row-major: row r is {m[r][0], m[r][1], m[r][2], m[r][3]}
 
 typedef struct anim_world anim_world;
@@ -23,6 +24,7 @@ typedef core_handle anim_skeleton; // resource
 typedef core_handle anim_clip;     // resource, made for one skeleton
 typedef core_handle anim_machine;  // resource: states and transitions, shared by instances
 typedef core_handle anim_instance; // one animated thing
+typedef core_handle anim_mask;     // resource: a weight for each bone of a skeleton
 
 typedef struct anim_world_desc {
     core_jobs *jobs;        // NULL: serial. Borrowed
@@ -48,7 +50,8 @@ size_t anim_world_bytes(const anim_world *world);
 void anim_world_counts(const anim_world *world, core_metrics *metrics); // skeletons, bones
 // Largest distance (m) between the palettes last computed and a double-precision evaluation of the
 // same state that shares no code with them: joint origins and points 0.1 m from them along each
-// axis. At most `sample` instances are looked at (0 = all). 0 when nothing is posed.
+// axis. Instances with layers are left out. At most `sample`
+// instances are looked at (0 = all). 0 when nothing is posed.
 double anim_world_error_max(anim_world *world, uint32_t sample);
 
 // ---- skeletons ----
@@ -150,9 +153,18 @@ typedef void anim_tick_fn(void *ctx, anim_world *world, anim_instance instance, 
 typedef float anim_speed_fn(void *ctx, anim_world *world, anim_instance instance, float phase);
 
 typedef enum anim_loop { ANIM_LOOP, ANIM_ONCE, ANIM_PING_PONG } anim_loop;
+// A point of a 1D blend tree: below the first and beyond the last value that end plays alone,
+// between two points both play at the same phase, weighted, with their durations blended likewise.
+typedef struct anim_blend_point {
+    anim_clip clip;
+    float value;
+} anim_blend_point;
 typedef struct anim_state_desc {
     const char *name; // unique in the machine
     anim_clip clip;
+    const anim_blend_point *blend; // in place of clip: ascending values, looping clips
+    uint32_t blend_count;
+    const char *blend_parameter; // of the machine
     anim_loop loop;
     float speed; // 0: 1; negative plays backwards
     anim_state_fn *on_enter, *on_exit;
@@ -241,6 +253,29 @@ bool anim_instance_set_user(anim_world *world, anim_instance instance, uint64_t 
 uint32_t anim_instance_bone_count(const anim_world *world, anim_instance instance);
 anim_skeleton anim_instance_skeleton(const anim_world *world, anim_instance instance);
 
+// Layers above the base, 1..ANIM_MAX_LAYERS, applied in order: each bone goes from the pose below
+// to the layer's by weight * mask. An additive layer adds its clip's difference from that clip's
+// first pose instead. Setting a layer replaces it; one with neither machine nor clip removes it.
+// Not from callbacks.
+typedef struct anim_layer_desc {
+    anim_machine machine; // null: `clip`
+    anim_clip clip;
+    anim_loop loop; // of clip
+    anim_mask mask; // null: all bones
+    float weight;   // [0, 1]; 0: 1, use anim_instance_set_layer_weight to hide it
+    bool additive;
+    uint32_t cookie;
+} anim_layer_desc;
+anim_layer_desc anim_layer_desc_default(void);
+bool anim_instance_set_layer(anim_world *world, anim_instance instance, uint32_t layer,
+                             const anim_layer_desc *desc);
+bool anim_instance_set_layer_weight(anim_world *world, anim_instance instance, uint32_t layer,
+                                    float weight);
+// weight[bone_count] in [0, 1], copied.
+anim_mask anim_mask_create(anim_world *world, anim_skeleton skeleton, const float *weight);
+bool anim_mask_destroy(anim_world *world, anim_mask mask); // false while in use
+bool anim_mask_alive(const anim_world *world, anim_mask mask);
+
 // Leaves the machine's choice for `clip` (or plays on an instance without one), fading over
 // `length` seconds from the pose of this moment.
 bool anim_instance_play(anim_world *world, anim_instance instance, anim_clip clip, anim_loop loop,
@@ -252,6 +287,7 @@ bool anim_instance_set_time(anim_world *world, anim_instance instance, float tim
 float anim_instance_time(const anim_world *world, anim_instance instance); // current clip, seconds
 bool anim_instance_set_speed(anim_world *world, anim_instance instance, float speed);
 bool anim_instance_finished(const anim_world *world, anim_instance instance); // time >= duration
+// Parameters and events reach the machines of all its layers that know the name.
 bool anim_instance_set_parameter(anim_world *world, anim_instance instance, const char *name,
                                  float value);
 bool anim_instance_parameter(const anim_world *world, anim_instance instance, const char *name,
@@ -275,9 +311,9 @@ bool anim_instance_pose(anim_world *world, anim_instance instance, anim_pose out
 // next create, destroy or pose. NULL before the first.
 const float *anim_instance_palette(const anim_world *world, anim_instance instance,
                                    uint32_t *bone_count);
-// Model-space matrix of a bone at the last anim_world_pose (attachment points).
-bool anim_instance_bone(const anim_world *world, anim_instance instance, uint32_t bone,
-                        core_mat4 *out);
+// Model-space matrix of a bone at the last anim_world_pose, or of this moment before the first
+// (attachment points).
+bool anim_instance_bone(anim_world *world, anim_instance instance, uint32_t bone, core_mat4 *out);
 // Rows for loops over all instances, in creation order until something is destroyed.
 uint32_t anim_instance_count(const anim_world *world);
 anim_instance anim_instance_at(const anim_world *world, uint32_t row);

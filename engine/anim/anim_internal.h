@@ -47,7 +47,8 @@ typedef struct anim_clip_res {
 
 typedef struct anim_state {
     char name[CORE_NAME_MAX];
-    anim_clip clip;
+    anim_clip clip; // of a blend tree: its first
+    uint32_t first_point, point_count, blend_parameter;
     anim_loop loop;
     float speed;
     anim_state_fn *on_enter, *on_exit;
@@ -72,7 +73,8 @@ typedef struct anim_machine_res {
     anim_skeleton skeleton;
     anim_state *state;
     anim_transition *transition;
-    uint32_t state_count, transition_count, initial;
+    anim_blend_point *point;
+    uint32_t state_count, transition_count, point_count, initial;
     char event[ANIM_MAX_EVENTS][CORE_NAME_MAX];
     char parameter[ANIM_MAX_PARAMETERS][CORE_NAME_MAX];
     float start_value[ANIM_MAX_PARAMETERS];
@@ -85,7 +87,7 @@ typedef struct anim_slot {
     core_handle clip; // of the state too, so that sampling need not look it up
     int32_t state;
     uint32_t loop;   // anim_loop
-    float time;      // seconds into the clip; ping-pong runs to twice the duration
+    float time;      // seconds into the clip, ping-pong to twice the duration; blend trees: phase
     uint32_t unused; // keeps the bytes of the struct defined for hashing
 } anim_slot;
 
@@ -93,6 +95,7 @@ typedef struct anim_values {
     float v[ANIM_MAX_PARAMETERS];
 } anim_values;
 
+enum { ANIM_ADDITIVE = 1 }; // mode
 enum { ANIM_FADING = 1, ANIM_SMOOTH = 2, ANIM_LOCKED = 4 };
 #define ANIM_PLAYER_COLUMNS(X)                                                                     \
     X(core_handle, machine, CORE_COLUMN_STATE)                                                     \
@@ -102,14 +105,28 @@ enum { ANIM_FADING = 1, ANIM_SMOOTH = 2, ANIM_LOCKED = 4 };
     X(float, fade_time, CORE_COLUMN_STATE)                                                         \
     X(float, fade_length, CORE_COLUMN_STATE)                                                       \
     X(uint32_t, flags, CORE_COLUMN_STATE)                                                          \
+    X(core_handle, mask, CORE_COLUMN_STATE)                                                        \
+    X(float, weight, CORE_COLUMN_STATE)                                                            \
+    X(uint32_t, mode, CORE_COLUMN_STATE)                                                           \
     X(uint32_t, events, CORE_COLUMN_STATE) /* bit per event name sent since the last update */     \
     X(anim_values, parameter, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(anim_players, ANIM_PLAYER_COLUMNS)
+
+typedef struct anim_layers {
+    core_handle player[ANIM_MAX_LAYERS];
+} anim_layers;
+typedef struct anim_mask_res {
+    anim_skeleton skeleton;
+    uint32_t users;
+    float *weight; // [stride]
+} anim_mask_res;
 
 enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
 #define ANIM_INSTANCE_COLUMNS(X)                                                                   \
     X(core_handle, skeleton, CORE_COLUMN_STATE)                                                    \
     X(core_handle, player, CORE_COLUMN_STATE)                                                      \
+    X(anim_layers, layer, CORE_COLUMN_STATE) /* null: none */                                      \
+    X(uint32_t, layered, CORE_COLUMN_STATE)  /* how many layers there are */                       \
     X(float, speed, CORE_COLUMN_STATE)                                                             \
     X(float, root_x, CORE_COLUMN_STATE)                                                            \
     X(float, root_y, CORE_COLUMN_STATE)                                                            \
@@ -136,7 +153,7 @@ CORE_COLUMNS_DECLARE(anim_resources, ANIM_RESOURCE_COLUMNS)
 struct anim_world {
     core_jobs *jobs;
     core_metrics *metrics;
-    anim_resources skeletons, clips, machines;
+    anim_resources skeletons, clips, machines, masks;
     anim_instances instances;
     anim_players players;
     anim_chunks chunks;
@@ -156,6 +173,7 @@ anim_skeleton_res *anim_get_skeleton(const anim_world *w, anim_skeleton h);
 anim_clip_res *anim_get_clip(const anim_world *w, anim_clip h);
 anim_machine_res *anim_get_machine(const anim_world *w, anim_machine h);
 // Row of a live instance or CORE_NO_ROW + core_fail.
+anim_mask_res *anim_get_mask(const anim_world *w, anim_mask h);
 uint32_t anim_get_instance(const anim_world *w, anim_instance h);
 core_handle anim_resource_add(anim_resources *set, void *item);
 core_arena *anim_scratch(anim_world *w, uint32_t worker);
@@ -182,12 +200,28 @@ float *anim_palette_of(const anim_world *w, uint32_t row);
 // The pose of an instance's present state.
 void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out);
 
+// The pose of one player: of an additive layer, its difference from the clip's first pose.
+void anim_evaluate_player(anim_world *w, const anim_skeleton_res *s, uint32_t player,
+                          core_arena *arena, float *out);
+
 core_handle anim_snapshot_take(anim_world *w, const anim_skeleton_res *s, const float *pose);
 void anim_snapshot_read(const anim_world *w, core_handle h, const anim_skeleton_res *s, float *out);
 void anim_snapshot_drop(anim_world *w, core_handle h);
 
 // ---- time ----
-float anim_slot_clip_time(const anim_clip_res *c, const anim_slot *slot);
+// What a slot plays: one clip, or two of a blend tree at one phase.
+typedef struct anim_motion {
+    const anim_clip_res *clip[2]; // [1] NULL: one
+    core_handle handle[2];
+    float weight;   // of the second
+    float scale[2]; // clip seconds for a unit of the slot's time
+    float length;   // of the clip in units of the slot's time
+    uint32_t loop;
+} anim_motion;
+anim_motion anim_slot_motion(const anim_world *w, uint32_t player, const anim_slot *slot);
+// The slot's time folded into [0, length] by its way of looping.
+float anim_motion_time(const anim_motion *m, float time);
+float anim_slot_clip_time(const anim_world *w, uint32_t player, const anim_slot *slot);
 float anim_fade_weight(const anim_world *w, uint32_t player);
 void anim_root_prepare(const anim_skeleton_res *s, anim_clip_res *c, bool vertical);
 // Takes root motion out of the root bone's translation.
@@ -198,6 +232,7 @@ core_vec3 anim_root_translation(const anim_clip_res *c, float time);
 core_key anim_track_sample(const core_clip_track *t, float time);
 
 // Starts a fade of player `p` (row) to `to`; see the callback order in anim.h.
+void anim_player_remove(anim_world *w, core_handle player);
 void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, float length,
                        anim_fade fade, bool locked);
 void anim_instance_remove(anim_world *w, uint32_t row);

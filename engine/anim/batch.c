@@ -8,8 +8,8 @@
 typedef struct group { // instances that one kernel call can sample
     const anim_skeleton_res *skeleton;
     const anim_clip_res *now, *from; // NULL: plain
-    bool fading;
-    uint32_t count, first; // place in the order
+    bool fading, whole;              // whole: layers or blend trees, evaluated instance by instance
+    uint32_t count, first;           // place in the order
 } group;
 
 #define GROUPS_MAX 1024u
@@ -38,10 +38,21 @@ static const anim_clip_res *packed_clip(const anim_world *w, core_handle h) {
     return c && c->pack ? c : NULL;
 }
 
+static bool is_tree(const anim_world *w, uint32_t p, const anim_slot *slot) {
+    return slot->state >= 0 &&
+           anim_get_machine(w, w->players.machine[p])->state[slot->state].point_count > 0;
+}
+
 static group describe(const anim_world *w, uint32_t row) {
     uint32_t p = core_columns_row(&w->players.set, w->instances.player[row]);
     uint32_t s = core_columns_row(&w->skeletons.set, w->instances.skeleton[row]);
-    group g = {.skeleton = w->skeletons.item[s], .now = packed_clip(w, w->players.now[p].clip)};
+    group g = {.skeleton = w->skeletons.item[s]};
+    g.whole = w->instances.layered[row] || is_tree(w, p, &w->players.now[p]) ||
+              is_tree(w, p, &w->players.from[p]);
+    if (g.whole) {
+        return g;
+    }
+    g.now = packed_clip(w, w->players.now[p].clip);
     g.fading = (w->players.flags[p] & ANIM_FADING) != 0;
     if (g.fading && core_handle_is_null(w->players.snapshot[p])) {
         g.from = packed_clip(w, w->players.from[p].clip);
@@ -52,7 +63,8 @@ static group describe(const anim_world *w, uint32_t row) {
 static uint32_t find_group(batch *b, const group *g) {
     uint64_t hash = (uint64_t)(uintptr_t)g->now * 0x9e3779b97f4a7c15u ^
                     (uint64_t)(uintptr_t)g->from * 0xc2b2ae3d27d4eb4fu ^
-                    (uint64_t)(uintptr_t)g->skeleton * 0x165667b19e3779f9u ^ g->fading;
+                    (uint64_t)(uintptr_t)g->skeleton * 0x165667b19e3779f9u ^
+                    (g->fading | (uint32_t)g->whole << 1);
     // The place in the table depends on addresses; the number of the group only on the order of
     // rows.
     for (uint32_t i = (uint32_t)(hash >> 40);; i++) {
@@ -66,7 +78,7 @@ static uint32_t find_group(batch *b, const group *g) {
         }
         const group *known = &b->group[*entry - 1];
         if (known->skeleton == g->skeleton && known->now == g->now && known->from == g->from &&
-            known->fading == g->fading) {
+            known->fading == g->fading && known->whole == g->whole) {
             return *entry - 1u;
         }
     }
@@ -125,18 +137,6 @@ static void put_lane(const float *columns, const anim_skeleton_res *s, uint32_t 
     }
 }
 
-static void plain_columns(const anim_world *w, const anim_skeleton_res *s, const anim_slot *slot,
-                          core_handle snapshot, float *columns) {
-    if (!core_handle_is_null(snapshot)) {
-        anim_snapshot_read(w, snapshot, s, columns);
-    } else if (core_handle_is_null(slot->clip)) {
-        memcpy(columns, s->bind, ANIM_COMPONENTS * s->stride * sizeof *columns);
-    } else {
-        const anim_clip_res *c = anim_get_clip(w, slot->clip);
-        anim_clip_sample_columns(s, c, anim_slot_clip_time(c, slot), columns);
-    }
-}
-
 typedef struct block {
     anim_world *w;
     const group *g;
@@ -154,7 +154,9 @@ static void sample_packed(const block *k, const anim_clip_res *c, bool from, flo
     float time[CORE_LANES];
     for (uint32_t i = 0; i < k->width; i++) {
         uint32_t p = player_of(k, i);
-        time[i] = anim_slot_clip_time(c, from ? &k->w->players.from[p] : &k->w->players.now[p]);
+        const anim_slot *slot = from ? &k->w->players.from[p] : &k->w->players.now[p];
+        anim_motion m = {.loop = slot->loop, .length = c->duration};
+        time[i] = anim_motion_time(&m, slot->time);
     }
     const anim_skeleton_res *s = k->g->skeleton;
     anim_sample_args a = {c->pack, c->rest, c->moved, s->bones, s->stride, time, pose};
@@ -167,17 +169,29 @@ static void sample_packed(const block *k, const anim_clip_res *c, bool from, flo
     }
 }
 
-static void sample_plain(const block *k, bool from, float *pose) {
+static void plain_columns(const block *k, uint32_t lane, bool from, float *columns) {
     const anim_skeleton_res *s = k->g->skeleton;
-    float *columns = anim_scratch_pose(k->arena, s);
+    uint32_t p = player_of(k, lane);
+    const anim_slot *slot = from ? &k->w->players.from[p] : &k->w->players.now[p];
+    if (k->g->whole) {
+        anim_evaluate(k->w, k->rows[lane], k->arena, columns);
+    } else if (from && !core_handle_is_null(k->w->players.snapshot[p])) {
+        anim_snapshot_read(k->w, k->w->players.snapshot[p], s, columns);
+    } else if (core_handle_is_null(slot->clip)) {
+        memcpy(columns, s->bind, ANIM_COMPONENTS * s->stride * sizeof *columns);
+    } else {
+        anim_clip_sample_columns(s, anim_get_clip(k->w, slot->clip),
+                                 anim_slot_clip_time(k->w, p, slot), columns);
+    }
+}
+
+static void sample_plain(const block *k, bool from, float *pose) {
+    float *columns = anim_scratch_pose(k->arena, k->g->skeleton);
     for (uint32_t i = 0; i < k->width; i++) {
-        uint32_t p = player_of(k, i);
-        const anim_slot *slot = from ? &k->w->players.from[p] : &k->w->players.now[p];
         if (i < k->count) {
-            plain_columns(k->w, s, slot, from ? k->w->players.snapshot[p] : CORE_NULL_HANDLE,
-                          columns);
+            plain_columns(k, i, from, columns);
         }
-        put_lane(columns, s, i, k->width, pose);
+        put_lane(columns, k->g->skeleton, i, k->width, pose);
     }
 }
 

@@ -160,16 +160,13 @@ static void bind_pose(const anim_skeleton_res *s, const float *columns, bone_pos
     }
 }
 
-static void sample_slot(const anim_world *w, const anim_skeleton_res *s, const anim_slot *slot,
+static void sample_clip(const anim_skeleton_res *s, const anim_clip_res *c, double time,
                         bone_pose *out) {
-    bind_pose(s, s->bind, out);
-    if (core_handle_is_null(slot->clip)) {
+    bind_pose(s, c && c->pack ? c->rest : s->bind, out);
+    if (!c) {
         return;
     }
-    const anim_clip_res *c = anim_get_clip(w, slot->clip);
-    double time = anim_slot_clip_time(c, slot);
     if (c->pack) {
-        bind_pose(s, c->rest, out);
         sample_packed(c, time, out);
     }
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -180,6 +177,20 @@ static void sample_slot(const anim_world *w, const anim_skeleton_res *s, const a
     }
 }
 
+static void sample_slot(const anim_world *w, const anim_skeleton_res *s, uint32_t p,
+                        const anim_slot *slot, bone_pose *out, core_arena *arena) {
+    anim_motion m = anim_slot_motion(w, p, slot);
+    double time = m.clip[0] ? (double)anim_motion_time(&m, slot->time) : 0;
+    sample_clip(s, m.clip[0], time * (double)m.scale[0], out);
+    if (m.clip[1]) {
+        bone_pose *second = CORE_ARENA_ARRAY(arena, bone_pose, s->bones);
+        sample_clip(s, m.clip[1], time * (double)m.scale[1], second);
+        for (uint32_t b = 0; b < s->bones; b++) {
+            mix_nlerp(&out[b], &second[b], (double)m.weight, &out[b]);
+        }
+    }
+}
+
 static double fade_weight(const anim_world *w, uint32_t p) {
     double s = (double)w->players.fade_time[p] / w->players.fade_length[p];
     s = CORE_CLAMP(s, 0.0, 1.0);
@@ -187,14 +198,14 @@ static double fade_weight(const anim_world *w, uint32_t p) {
 }
 
 static void evaluate(anim_world *w, const anim_skeleton_res *s, uint32_t row, bone_pose *out,
-                     bone_pose *from, float *columns) {
+                     bone_pose *from, float *columns, core_arena *arena) {
     uint32_t p = core_columns_row(&w->players.set, w->instances.player[row]);
-    sample_slot(w, s, &w->players.now[p], out);
+    sample_slot(w, s, p, &w->players.now[p], out, arena);
     if (!(w->players.flags[p] & ANIM_FADING)) {
         return;
     }
     if (core_handle_is_null(w->players.snapshot[p])) {
-        sample_slot(w, s, &w->players.from[p], from);
+        sample_slot(w, s, p, &w->players.from[p], from, arena);
     } else {
         anim_snapshot_read(w, w->players.snapshot[p], s, columns);
         bind_pose(s, columns, from);
@@ -251,7 +262,7 @@ static double instance_error(anim_world *w, uint32_t row, core_arena *arena) {
     bone_pose *pose = CORE_ARENA_ARRAY(arena, bone_pose, s->bones);
     bone_pose *from = CORE_ARENA_ARRAY(arena, bone_pose, s->bones);
     double *model = CORE_ARENA_ARRAY(arena, double, 12u * s->bones);
-    evaluate(w, s, row, pose, from, anim_scratch_pose(arena, s));
+    evaluate(w, s, row, pose, from, anim_scratch_pose(arena, s), arena);
     double worst = 0;
     for (uint32_t b = 0; b < s->bones; b++) {
         double local[12];
@@ -284,7 +295,8 @@ double anim_world_error_max(anim_world *w, uint32_t sample) {
     core_arena *arena = anim_scratch(w, 0);
     double worst = 0;
     for (uint32_t row = 0; row < count && (!sample || looked < sample); row += stride) {
-        if (!w->instances.posed[row] || (w->instances.flags[row] & ANIM_HIDDEN)) {
+        if (!w->instances.posed[row] || w->instances.layered[row] ||
+            (w->instances.flags[row] & ANIM_HIDDEN)) {
             continue;
         }
         size_t mark = core_arena_mark(arena);

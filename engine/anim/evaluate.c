@@ -3,32 +3,124 @@
 
 #include <string.h>
 
-static void sample_slot(const anim_world *w, const anim_skeleton_res *s, const anim_slot *slot,
-                        float *out) {
-    if (core_handle_is_null(slot->clip)) {
+static void sample_motion(const anim_skeleton_res *s, const anim_motion *m, float time,
+                          core_arena *arena, float *out) {
+    if (!m->clip[0]) {
         memcpy(out, s->bind, ANIM_COMPONENTS * s->stride * sizeof(float));
         return;
     }
-    const anim_clip_res *c = anim_get_clip(w, slot->clip);
-    anim_clip_sample_columns(s, c, anim_slot_clip_time(c, slot), out);
+    anim_clip_sample_columns(s, m->clip[0], time * m->scale[0], out);
+    if (m->clip[1]) {
+        size_t mark = core_arena_mark(arena);
+        float *second = anim_scratch_pose(arena, s);
+        anim_clip_sample_columns(s, m->clip[1], time * m->scale[1], second);
+        anim_columns_blend(out, second, m->weight, s->stride, out);
+        core_arena_rewind(arena, mark);
+    }
 }
 
-void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out) {
-    const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
-    uint32_t p = core_columns_row(&w->players.set, w->instances.player[row]);
-    sample_slot(w, s, &w->players.now[p], out);
+// pose = what turns the reference into it: T - Tr, Rr^-1 R, S / Sr.
+static void subtract_reference(const float *ref, uint32_t n, float *pose) {
+    for (uint32_t i = 0; i < 3 * n; i++) {
+        pose[ANIM_TX * n + i] -= ref[ANIM_TX * n + i];
+        float base = ref[ANIM_SX * n + i];
+        pose[ANIM_SX * n + i] = base != 0 ? pose[ANIM_SX * n + i] / base : 1;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        const float *a = ref + ANIM_RX * n + i;
+        float *b = pose + ANIM_RX * n + i;
+        core_quat inverse = {-a[0], -a[n], -a[2 * n], a[3 * n]};
+        core_quat d = core_quat_mul(inverse, (core_quat){b[0], b[n], b[2 * n], b[3 * n]});
+        b[0] = d.x;
+        b[n] = d.y;
+        b[2 * n] = d.z;
+        b[3 * n] = d.w;
+    }
+}
+
+static void sample_slot(const anim_world *w, const anim_skeleton_res *s, uint32_t p,
+                        const anim_slot *slot, core_arena *arena, float *out) {
+    anim_motion m = anim_slot_motion(w, p, slot);
+    sample_motion(s, &m, m.clip[0] ? anim_motion_time(&m, slot->time) : 0, arena, out);
+    if (w->players.mode[p] & ANIM_ADDITIVE) {
+        size_t mark = core_arena_mark(arena);
+        float *ref = anim_scratch_pose(arena, s);
+        sample_motion(s, &m, 0, arena, ref);
+        subtract_reference(ref, s->stride, out);
+        core_arena_rewind(arena, mark);
+    }
+}
+
+void anim_evaluate_player(anim_world *w, const anim_skeleton_res *s, uint32_t p, core_arena *arena,
+                          float *out) {
+    sample_slot(w, s, p, &w->players.now[p], arena, out);
     if (!(w->players.flags[p] & ANIM_FADING)) {
         return;
     }
     size_t mark = core_arena_mark(arena);
     float *from = anim_scratch_pose(arena, s);
     if (core_handle_is_null(w->players.snapshot[p])) {
-        sample_slot(w, s, &w->players.from[p], from);
+        sample_slot(w, s, p, &w->players.from[p], arena, from);
     } else {
         anim_snapshot_read(w, w->players.snapshot[p], s, from);
     }
     anim_columns_blend(from, out, anim_fade_weight(w, p), s->stride, out);
     core_arena_rewind(arena, mark);
+}
+
+// One bone of a layer over the pose below it.
+static void lay_bone(const float *layer, uint32_t n, float weight, bool additive, float *pose) {
+    float left = 1 - weight;
+    for (uint32_t c = 0; c < 3; c++) {
+        float *t = pose + (ANIM_TX + c) * n, *s = pose + (ANIM_SX + c) * n;
+        float lt = layer[(ANIM_TX + c) * n], ls = layer[(ANIM_SX + c) * n];
+        *t = additive ? *t + lt * weight : *t * left + lt * weight;
+        *s = additive ? *s * (left + ls * weight) : *s * left + ls * weight;
+    }
+    const float *l = layer + ANIM_RX * n;
+    float *q = pose + ANIM_RX * n;
+    core_quat below = {q[0], q[n], q[2 * n], q[3 * n]};
+    core_quat above = {l[0], l[n], l[2 * n], l[3 * n]};
+    core_quat r = additive
+                      ? core_quat_mul(below, core_quat_nlerp(core_quat_identity(), above, weight))
+                      : core_quat_nlerp(below, above, weight);
+    q[0] = r.x;
+    q[n] = r.y;
+    q[2 * n] = r.z;
+    q[3 * n] = r.w;
+}
+
+static void lay_over(anim_world *w, const anim_skeleton_res *s, uint32_t p, core_arena *arena,
+                     float *pose) {
+    if (!(w->players.weight[p] > 0)) {
+        return;
+    }
+    size_t mark = core_arena_mark(arena);
+    float *layer = anim_scratch_pose(arena, s);
+    anim_evaluate_player(w, s, p, arena, layer);
+    const float *mask = core_handle_is_null(w->players.mask[p])
+                            ? NULL
+                            : anim_get_mask(w, w->players.mask[p])->weight;
+    bool additive = (w->players.mode[p] & ANIM_ADDITIVE) != 0;
+    for (uint32_t b = 0; b < s->bones; b++) {
+        float weight = w->players.weight[p] * (mask ? mask[b] : 1);
+        if (weight > 0) {
+            lay_bone(layer + b, s->stride, weight, additive, pose + b);
+        }
+    }
+    core_arena_rewind(arena, mark);
+}
+
+void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out) {
+    const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
+    anim_evaluate_player(w, s, core_columns_row(&w->players.set, w->instances.player[row]), arena,
+                         out);
+    for (uint32_t i = 0; w->instances.layered[row] && i < ANIM_MAX_LAYERS; i++) {
+        uint32_t p = core_columns_row(&w->players.set, w->instances.layer[row].player[i]);
+        if (p != CORE_NO_ROW) {
+            lay_over(w, s, p, arena, out);
+        }
+    }
 }
 
 float *anim_palette_of(const anim_world *w, uint32_t row) {
@@ -100,12 +192,17 @@ const float *anim_instance_palette(const anim_world *w, anim_instance h, uint32_
 
 // The palette holds model * inverse bind; undoing the latter costs one product and saves a second
 // array for every bone of every instance.
-bool anim_instance_bone(const anim_world *w, anim_instance h, uint32_t bone, core_mat4 *out) {
-    uint32_t bones;
+bool anim_instance_bone(anim_world *w, anim_instance h, uint32_t bone, core_mat4 *out) {
+    uint32_t row = anim_get_instance(w, h), bones;
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    if (!w->instances.posed[row]) {
+        anim_pose_plain(w, row, anim_scratch(w, 0));
+    }
     const float *palette = anim_instance_palette(w, h, &bones);
-    if (!palette || bone >= bones) {
-        return core_fail("anim_instance_bone: bone %u of %u; the instance must have been posed",
-                         bone, bones);
+    if (bone >= bones) {
+        return core_fail("anim_instance_bone: bone %u of %u", bone, bones);
     }
     const anim_skeleton_res *s = anim_get_skeleton(w, anim_instance_skeleton(w, h));
     core_mat4 skin = core_mat4_identity(), inverse = core_mat4_identity(), bind;

@@ -55,16 +55,21 @@ static void give_place(anim_skeleton_res *s, uint32_t place) {
     s->free_place[s->free_count++] = place;
 }
 
-static void set_content(anim_world *w, uint32_t p, const anim_instance_desc *d) {
+// A new player of a machine or a clip. Null + core_fail when there is no room.
+static core_handle add_player(anim_world *w, anim_machine machine, anim_clip clip, anim_loop loop,
+                              float time) {
+    core_handle player = core_columns_add(&w->players.set);
+    if (core_handle_is_null(player)) {
+        return player;
+    }
+    uint32_t p = core_columns_row(&w->players.set, player);
     anim_slot *now = &w->players.now[p];
-    now->state = -1;
-    now->clip = d->clip;
-    now->loop = d->loop;
-    now->time = d->time;
-    w->players.machine[p] = d->machine;
+    *now = (anim_slot){.state = -1, .clip = clip, .loop = loop, .time = time};
+    w->players.machine[p] = machine;
     w->players.from[p].state = -1;
-    if (!core_handle_is_null(d->machine)) {
-        anim_machine_res *m = anim_get_machine(w, d->machine);
+    w->players.weight[p] = 1;
+    if (!core_handle_is_null(machine)) {
+        anim_machine_res *m = anim_get_machine(w, machine);
         now->state = (int32_t)m->initial;
         now->clip = m->state[m->initial].clip;
         now->loop = m->state[m->initial].loop;
@@ -74,6 +79,7 @@ static void set_content(anim_world *w, uint32_t p, const anim_instance_desc *d) 
     if (!core_handle_is_null(now->clip)) {
         anim_get_clip(w, now->clip)->users++;
     }
+    return player;
 }
 
 anim_instance anim_instance_create(anim_world *w, const anim_instance_desc *d) {
@@ -88,11 +94,11 @@ anim_instance anim_instance_create(anim_world *w, const anim_instance_desc *d) {
         return CORE_NULL_HANDLE;
     }
     core_handle h = core_columns_add(&w->instances.set);
-    core_handle player = core_columns_add(&w->players.set);
-    if (core_handle_is_null(h) || core_handle_is_null(player)) {
+    core_handle player =
+        core_handle_is_null(h) ? h : add_player(w, d->machine, d->clip, d->loop, d->time);
+    if (core_handle_is_null(player)) {
         give_place(s, place);
         core_columns_remove(&w->instances.set, h, NULL, NULL);
-        core_columns_remove(&w->players.set, player, NULL, NULL);
         return CORE_NULL_HANDLE;
     }
     uint32_t row = core_columns_row(&w->instances.set, h);
@@ -101,7 +107,6 @@ anim_instance anim_instance_create(anim_world *w, const anim_instance_desc *d) {
     w->instances.speed[row] = d->speed == 0 ? 1 : d->speed;
     w->instances.user[row] = d->user;
     w->instances.place[row] = place;
-    set_content(w, core_columns_row(&w->players.set, player), d);
     s->users++;
     w->bones_live += s->bones;
     return h;
@@ -113,17 +118,29 @@ static void release_clip(anim_world *w, core_handle clip) {
     }
 }
 
-void anim_instance_remove(anim_world *w, uint32_t row) {
-    anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
-    core_handle player = w->instances.player[row];
+void anim_player_remove(anim_world *w, core_handle player) {
     uint32_t p = core_columns_row(&w->players.set, player);
+    if (p == CORE_NO_ROW) {
+        return;
+    }
     release_clip(w, w->players.now[p].clip);
     release_clip(w, w->players.from[p].clip);
     anim_snapshot_drop(w, w->players.snapshot[p]);
     if (!core_handle_is_null(w->players.machine[p])) {
         anim_get_machine(w, w->players.machine[p])->users--;
     }
+    if (!core_handle_is_null(w->players.mask[p])) {
+        anim_get_mask(w, w->players.mask[p])->users--;
+    }
     core_columns_remove(&w->players.set, player, NULL, NULL);
+}
+
+void anim_instance_remove(anim_world *w, uint32_t row) {
+    anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
+    anim_player_remove(w, w->instances.player[row]);
+    for (uint32_t i = 0; i < ANIM_MAX_LAYERS; i++) {
+        anim_player_remove(w, w->instances.layer[row].player[i]);
+    }
     give_place(s, w->instances.place[row]);
     s->users--;
     w->bones_live -= s->bones;
@@ -243,7 +260,7 @@ float anim_instance_time(const anim_world *w, anim_instance h) {
     if (p == CORE_NO_ROW || core_handle_is_null(w->players.now[p].clip)) {
         return 0;
     }
-    return anim_slot_clip_time(anim_get_clip(w, w->players.now[p].clip), &w->players.now[p]);
+    return anim_slot_clip_time(w, p, &w->players.now[p]);
 }
 
 bool anim_instance_set_speed(anim_world *w, anim_instance h, float speed) {
@@ -263,59 +280,153 @@ bool anim_instance_finished(const anim_world *w, anim_instance h) {
     if (p == CORE_NO_ROW || core_handle_is_null(w->players.now[p].clip)) {
         return false;
     }
-    return w->players.now[p].time >= anim_get_clip(w, w->players.now[p].clip)->duration;
+    anim_motion m = anim_slot_motion(w, p, &w->players.now[p]);
+    return w->players.now[p].time >= m.length;
 }
 
-static bool find_parameter(const anim_world *w, anim_instance h, const char *name, uint32_t *p,
-                           uint32_t *number) {
-    uint32_t row;
-    *p = player_row(w, h, &row);
-    const anim_machine_res *m = *p == CORE_NO_ROW ? NULL : machine_of(w, *p);
-    if (!m) {
+// Row of the i-th player, 0 the base; CORE_NO_ROW when there is none.
+static uint32_t nth_player(const anim_world *w, uint32_t row, uint32_t i) {
+    core_handle h = i == 0 ? w->instances.player[row] : w->instances.layer[row].player[i - 1];
+    return core_columns_row(&w->players.set, h);
+}
+
+static bool find_parameter(const anim_world *w, uint32_t row, uint32_t layer, const char *name,
+                           uint32_t *p, uint32_t *number) {
+    *p = nth_player(w, row, layer);
+    if (*p == CORE_NO_ROW || core_handle_is_null(w->players.machine[*p])) {
         return false;
     }
+    const anim_machine_res *m = anim_get_machine(w, w->players.machine[*p]);
     for (uint32_t i = 0; i < m->parameter_count; i++) {
         if (strcmp(m->parameter[i], name) == 0) {
             *number = i;
             return true;
         }
     }
-    return core_fail("state machine: no parameter \"%s\"; nearest is \"%s\"", name,
-                     anim_nearest(name, m->parameter, CORE_NAME_MAX, m->parameter_count));
+    return false;
+}
+
+static bool no_parameter(const anim_world *w, uint32_t row, const char *name) {
+    const anim_machine_res *m = machine_of(w, nth_player(w, row, 0));
+    return m && core_fail("state machine: no parameter \"%s\"; nearest is \"%s\"", name,
+                          anim_nearest(name, m->parameter, CORE_NAME_MAX, m->parameter_count));
 }
 
 bool anim_instance_set_parameter(anim_world *w, anim_instance h, const char *name, float value) {
-    uint32_t p, i;
-    if (!find_parameter(w, h, name, &p, &i)) {
+    uint32_t row = anim_get_instance(w, h), p, number, found = 0;
+    if (row == CORE_NO_ROW) {
         return false;
     }
     if (!isfinite(value)) {
         return core_fail("state machine: parameter \"%s\" set to %g", name, value);
     }
-    w->players.parameter[p].v[i] = value;
-    return true;
+    for (uint32_t i = 0; i <= ANIM_MAX_LAYERS; i++) {
+        if (find_parameter(w, row, i, name, &p, &number)) {
+            w->players.parameter[p].v[number] = value;
+            found++;
+        }
+    }
+    return found > 0 || no_parameter(w, row, name);
 }
 
 bool anim_instance_parameter(const anim_world *w, anim_instance h, const char *name, float *out) {
-    uint32_t p, i;
-    if (!find_parameter(w, h, name, &p, &i)) {
-        return false;
-    }
-    *out = w->players.parameter[p].v[i];
-    return true;
-}
-
-bool anim_instance_send(anim_world *w, anim_instance h, const char *event) {
-    uint32_t row, p = player_row(w, h, &row);
-    const anim_machine_res *m = p == CORE_NO_ROW ? NULL : machine_of(w, p);
-    for (uint32_t i = 0; m && i < m->event_count; i++) {
-        if (strcmp(m->event[i], event) == 0) {
-            w->players.events[p] |= 1u << i;
+    uint32_t row = anim_get_instance(w, h), p, number;
+    for (uint32_t i = 0; row != CORE_NO_ROW && i <= ANIM_MAX_LAYERS; i++) {
+        if (find_parameter(w, row, i, name, &p, &number)) {
+            *out = w->players.parameter[p].v[number];
             return true;
         }
     }
+    return row != CORE_NO_ROW && no_parameter(w, row, name);
+}
+
+bool anim_instance_send(anim_world *w, anim_instance h, const char *event) {
+    uint32_t row = anim_get_instance(w, h), found = 0;
+    for (uint32_t i = 0; row != CORE_NO_ROW && i <= ANIM_MAX_LAYERS; i++) {
+        uint32_t p = nth_player(w, row, i);
+        bool has = p != CORE_NO_ROW && !core_handle_is_null(w->players.machine[p]);
+        const anim_machine_res *m = has ? anim_get_machine(w, w->players.machine[p]) : NULL;
+        for (uint32_t e = 0; m && e < m->event_count; e++) {
+            if (strcmp(m->event[e], event) == 0) {
+                w->players.events[p] |= 1u << e;
+                found++;
+            }
+        }
+    }
+    if (row == CORE_NO_ROW || found) {
+        return found > 0;
+    }
+    const anim_machine_res *m = machine_of(w, nth_player(w, row, 0));
     return m && core_fail("state machine: no transition listens to \"%s\"; nearest is \"%s\"",
                           event, anim_nearest(event, m->event, CORE_NAME_MAX, m->event_count));
+}
+
+// ---- layers ----
+
+anim_layer_desc anim_layer_desc_default(void) { return (anim_layer_desc){.cookie = ANIM_COOKIE}; }
+
+static bool check_layer(const anim_world *w, uint32_t row, uint32_t layer,
+                        const anim_layer_desc *d) {
+    if (layer < 1 || layer > ANIM_MAX_LAYERS || d->cookie != ANIM_COOKIE || w->updating) {
+        return core_fail("animation layer %u: expected 1..%u, a description made by "
+                         "anim_layer_desc_default(), and no call from a callback",
+                         layer, ANIM_MAX_LAYERS);
+    }
+    if (!(d->weight >= 0 && d->weight <= 1)) {
+        return core_fail("animation layer %u: weight %g, expected 0..1", layer, d->weight);
+    }
+    anim_instance_desc content = {.skeleton = w->instances.skeleton[row],
+                                  .machine = d->machine,
+                                  .clip = d->clip,
+                                  .loop = d->loop};
+    if (!check_content(w, &content)) {
+        return false;
+    }
+    const anim_mask_res *m = core_handle_is_null(d->mask) ? NULL : anim_get_mask(w, d->mask);
+    return core_handle_is_null(d->mask) ||
+           (m && (core_handle_equal(m->skeleton, content.skeleton) ||
+                  core_fail("animation layer %u: its mask is for another skeleton", layer)));
+}
+
+bool anim_instance_set_layer(anim_world *w, anim_instance h, uint32_t layer,
+                             const anim_layer_desc *d) {
+    uint32_t row = anim_get_instance(w, h);
+    if (row == CORE_NO_ROW || !check_layer(w, row, layer, d)) {
+        return false;
+    }
+    core_handle *slot = &w->instances.layer[row].player[layer - 1];
+    w->instances.layered[row] -= !core_handle_is_null(*slot);
+    anim_player_remove(w, *slot);
+    *slot = CORE_NULL_HANDLE;
+    if (core_handle_is_null(d->machine) && core_handle_is_null(d->clip)) {
+        return true;
+    }
+    *slot = add_player(w, d->machine, d->clip, d->loop, 0);
+    if (core_handle_is_null(*slot)) {
+        return false;
+    }
+    uint32_t p = core_columns_row(&w->players.set, *slot);
+    w->players.weight[p] = d->weight == 0 ? 1 : d->weight;
+    w->players.mode[p] = d->additive ? ANIM_ADDITIVE : 0;
+    w->players.mask[p] = d->mask;
+    if (!core_handle_is_null(d->mask)) {
+        anim_get_mask(w, d->mask)->users++;
+    }
+    w->instances.layered[row]++;
+    return true;
+}
+
+bool anim_instance_set_layer_weight(anim_world *w, anim_instance h, uint32_t layer, float weight) {
+    uint32_t row = anim_get_instance(w, h);
+    uint32_t p = row == CORE_NO_ROW || layer < 1 || layer > ANIM_MAX_LAYERS
+                     ? CORE_NO_ROW
+                     : nth_player(w, row, layer);
+    if (p == CORE_NO_ROW || !(weight >= 0 && weight <= 1)) {
+        return core_fail("animation layer %u: it is not set, or weight %g is not in 0..1", layer,
+                         weight);
+    }
+    w->players.weight[p] = weight;
+    return true;
 }
 
 const char *anim_instance_state(const anim_world *w, anim_instance h) {

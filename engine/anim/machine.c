@@ -52,6 +52,28 @@ static bool parameter_number(const anim_machine_res *m, const char *name, uint32
         anim_nearest(name ? name : "", m->parameter, CORE_NAME_MAX, m->parameter_count));
 }
 
+static bool add_points(const anim_world *w, anim_machine_res *m, anim_state *s,
+                       const anim_state_desc *d) {
+    s->first_point = m->point_count;
+    for (uint32_t i = 0; i < d->blend_count; i++) {
+        const anim_clip_res *c = anim_get_clip(w, d->blend[i].clip);
+        const anim_clip_res *first = anim_get_clip(w, d->blend[0].clip);
+        if (!c || !first || !core_handle_equal(c->skeleton, first->skeleton)) {
+            return core_fail("state machine: state \"%s\": point %u needs a clip of the same "
+                             "skeleton as the others",
+                             s->name, i + 1);
+        }
+        if (!isfinite(d->blend[i].value) ||
+            (i > 0 && !(d->blend[i].value > d->blend[i - 1].value))) {
+            return core_fail("state machine: state \"%s\": point %u at %g; values must grow",
+                             s->name, i + 1, d->blend[i].value);
+        }
+        m->point[m->point_count++] = d->blend[i];
+    }
+    s->point_count = d->blend_count;
+    return d->blend_count == 0 || parameter_number(m, d->blend_parameter, &s->blend_parameter);
+}
+
 static bool add_state(anim_world *w, anim_machine_res *m, const anim_state_desc *d) {
     anim_state *s = &m->state[m->state_count];
     if (!copy_name(s->name, d->name, "state")) {
@@ -62,7 +84,11 @@ static bool add_state(anim_world *w, anim_machine_res *m, const anim_state_desc 
             return core_fail("state machine: two states are called \"%s\"", s->name);
         }
     }
-    anim_clip_res *c = anim_get_clip(w, d->clip);
+    if (!add_points(w, m, s, d)) {
+        return false;
+    }
+    anim_clip clip = d->blend_count ? d->blend[0].clip : d->clip;
+    anim_clip_res *c = anim_get_clip(w, clip);
     if (!c) {
         return core_fail("state machine: state \"%s\" needs a clip that exists", s->name);
     }
@@ -77,8 +103,8 @@ static bool add_state(anim_world *w, anim_machine_res *m, const anim_state_desc 
                          s->name, (int)d->loop, d->speed);
     }
     m->skeleton = c->skeleton;
-    s->clip = d->clip;
-    s->loop = d->loop;
+    s->clip = clip;
+    s->loop = d->blend_count ? ANIM_LOOP : d->loop;
     s->speed = d->speed == 0 ? 1 : d->speed;
     s->on_enter = d->on_enter;
     s->on_exit = d->on_exit;
@@ -158,6 +184,15 @@ static bool fill(anim_world *w, anim_machine_res *m, const anim_machine_desc *d)
     return initial >= 0;
 }
 
+static void count_users(anim_world *w, const anim_machine_res *m, int by) {
+    for (uint32_t i = 0; i < m->state_count; i++) {
+        anim_get_clip(w, m->state[i].clip)->users += (uint32_t)by;
+    }
+    for (uint32_t i = 0; i < m->point_count; i++) {
+        anim_get_clip(w, m->point[i].clip)->users += (uint32_t)by;
+    }
+}
+
 anim_machine anim_machine_create(anim_world *w, const anim_machine_desc *d) {
     if (!d || d->cookie != ANIM_COOKIE || d->state_count == 0 || d->state_count > ANIM_MAX_STATES ||
         d->parameter_count > ANIM_MAX_PARAMETERS || d->transition_count > 65536) {
@@ -166,18 +201,22 @@ anim_machine anim_machine_create(anim_world *w, const anim_machine_desc *d) {
                   ANIM_MAX_STATES, ANIM_MAX_PARAMETERS);
         return CORE_NULL_HANDLE;
     }
+    size_t points = 0;
+    for (uint32_t i = 0; i < d->state_count; i++) {
+        points += d->state[i].blend_count;
+    }
     anim_machine_res *m = core_alloc(sizeof *m + d->state_count * sizeof(anim_state) +
-                                     d->transition_count * sizeof(anim_transition));
+                                     d->transition_count * sizeof(anim_transition) +
+                                     points * sizeof(anim_blend_point));
     m->state = (anim_state *)(m + 1);
     m->transition = (anim_transition *)(m->state + d->state_count);
+    m->point = (anim_blend_point *)(m->transition + d->transition_count);
     core_handle h = fill(w, m, d) ? anim_resource_add(&w->machines, m) : CORE_NULL_HANDLE;
     if (core_handle_is_null(h)) {
         core_free(m);
         return h;
     }
-    for (uint32_t i = 0; i < m->state_count; i++) {
-        anim_get_clip(w, m->state[i].clip)->users++;
-    }
+    count_users(w, m, 1);
     return h;
 }
 
@@ -189,9 +228,7 @@ bool anim_machine_destroy(anim_world *w, anim_machine h) {
     if (m->users) {
         return core_fail("state machine: %u instances still use it; destroy them first", m->users);
     }
-    for (uint32_t i = 0; i < m->state_count; i++) {
-        anim_get_clip(w, m->state[i].clip)->users--;
-    }
+    count_users(w, m, -1);
     core_free(m);
     return core_columns_remove(&w->machines.set, h, NULL, NULL);
 }

@@ -18,22 +18,9 @@ static const anim_state *state_of(const anim_world *w, uint32_t p, const anim_sl
     return slot->state < 0 ? NULL : &anim_get_machine(w, w->players.machine[p])->state[slot->state];
 }
 
-// Length of one period of the slot's own time.
-static float period(const anim_clip_res *c, uint32_t loop) {
-    return loop == ANIM_PING_PONG ? 2 * c->duration : c->duration;
-}
-
-float anim_slot_clip_time(const anim_clip_res *c, const anim_slot *slot) {
-    float t = slot->time;
-    if (slot->loop != ANIM_ONCE) {
-        float d = period(c, slot->loop);
-        if (!(t >= 0 && t <= d)) {
-            t = (float)core_fmod(t, d);
-            t = t < 0 ? t + d : t;
-        }
-        t = slot->loop == ANIM_PING_PONG && t > c->duration ? d - t : t;
-    }
-    return CORE_CLAMP(t, 0.0f, c->duration);
+// Length of one period of a slot's own time.
+static float period(const anim_motion *m) {
+    return m->loop == ANIM_PING_PONG ? 2 * m->length : m->length;
 }
 
 float anim_fade_weight(const anim_world *w, uint32_t p) {
@@ -76,37 +63,43 @@ typedef struct slot_step {
 } slot_step;
 
 // One straight piece of a step in slot time, where the clip's time runs one way.
-static void piece(anim_world *w, uint32_t row, const anim_slot *slot, const anim_clip_res *c,
-                  float a, float b, slot_step *out) {
-    bool mirrored = slot->loop == ANIM_PING_PONG && (a + b) * 0.5f > c->duration;
-    float d = 2 * c->duration;
-    float ta = mirrored ? d - a : a, tb = mirrored ? d - b : b;
-    events_between(w, row, slot->clip, c, ta, tb);
-    if (c->root_motion) {
-        out->root = core_v3_add(out->root, anim_root_between(c, ta, tb));
+static void piece(anim_world *w, uint32_t row, const anim_motion *m, float a, float b,
+                  slot_step *out) {
+    bool mirrored = m->loop == ANIM_PING_PONG && (a + b) * 0.5f > m->length;
+    float d = 2 * m->length, ta = mirrored ? d - a : a, tb = mirrored ? d - b : b;
+    uint32_t louder = m->clip[1] && m->weight > 0.5f; // whose events are told
+    for (uint32_t i = 0; i < 2 && m->clip[i]; i++) {
+        const anim_clip_res *c = m->clip[i];
+        float from = ta * m->scale[i], to = tb == m->length ? c->duration : tb * m->scale[i];
+        if (i == louder) {
+            events_between(w, row, m->handle[i], c, from, to);
+        }
+        if (c->root_motion) {
+            core_vec3 moved = anim_root_between(c, from, to);
+            out->root = core_v3_mad(out->root, moved, i ? m->weight : 1 - m->weight);
+        }
     }
 }
 
 // The next place where a straight piece ends.
-static float piece_end(const anim_clip_res *c, uint32_t loop, float t, bool forwards) {
-    float d = c->duration;
-    if (loop == ANIM_PING_PONG) {
+static float piece_end(const anim_motion *m, float t, bool forwards) {
+    float d = m->length;
+    if (m->loop == ANIM_PING_PONG) {
         return forwards ? (t < d ? d : 2 * d) : (t > d ? d : 0);
     }
     return forwards ? d : 0;
 }
 
-// Whole periods in one step cost no loop over them unless events or root motion ask for it.
+// More whole periods than this in one step keep their phase and tell no events.
 #define MAX_PIECES 256
 
-static void advance_time(anim_world *w, uint32_t row, anim_slot *slot, const anim_clip_res *c,
+static void advance_time(anim_world *w, uint32_t row, anim_slot *slot, const anim_motion *m,
                          float delta, slot_step *out) {
-    float p = period(c, slot->loop), t = slot->time;
-    if (slot->loop == ANIM_ONCE) {
-        float end = CORE_CLAMP(t + delta, 0.0f, c->duration);
-        float start = CORE_CLAMP(t, 0.0f, c->duration);
-        piece(w, row, slot, c, start, end, out);
-        out->wrapped = t + delta >= c->duration || (delta < 0 && t + delta <= 0);
+    float p = period(m), t = slot->time;
+    if (m->loop == ANIM_ONCE) {
+        float end = CORE_CLAMP(t + delta, 0.0f, m->length);
+        piece(w, row, m, CORE_CLAMP(t, 0.0f, m->length), end, out);
+        out->wrapped = t + delta >= m->length || (delta < 0 && t + delta <= 0);
         slot->time = end;
         return;
     }
@@ -119,46 +112,54 @@ static void advance_time(anim_world *w, uint32_t row, anim_slot *slot, const ani
         if (forwards ? t >= p : t <= 0) {
             t = forwards ? 0 : p;
         }
-        float end = piece_end(c, slot->loop, t, forwards);
-        float next = t + delta;
+        float end = piece_end(m, t, forwards), next = t + delta;
         if (forwards ? next < end : next > end) {
-            piece(w, row, slot, c, t, next, out);
+            piece(w, row, m, t, next, out);
             t = next;
             delta = 0;
         } else {
-            piece(w, row, slot, c, t, end, out);
+            piece(w, row, m, t, end, out);
             delta -= end - t;
             t = end;
             out->wrapped = out->wrapped || t >= p || t <= 0;
         }
     }
-    if (delta != 0) { // a step of very many periods: keep the phase
+    if (delta != 0) {
         t = (float)core_fmod((double)t + delta, p);
         t = t < 0 ? t + p : t;
     }
     slot->time = t;
 }
 
+// Slot time a second at speed 1: a blend tree's phase runs by its blended duration.
+static float base_rate(const anim_motion *m, const anim_state *s) {
+    if (!s || !s->point_count) {
+        return 1;
+    }
+    float d = m->scale[0] + (m->clip[1] ? (m->scale[1] - m->scale[0]) * m->weight : 0);
+    return 1 / d;
+}
+
 static slot_step advance(anim_world *w, uint32_t row, uint32_t p, bool leaving, float dt) {
     anim_slot *slot = leaving ? &w->players.from[p] : &w->players.now[p];
     slot_step out = {0};
-    if (core_handle_is_null(slot->clip)) {
+    anim_motion m = anim_slot_motion(w, p, slot);
+    if (!m.clip[0]) {
         return out;
     }
-    const anim_clip_res *c = anim_get_clip(w, slot->clip);
     const anim_state *s = state_of(w, p, slot);
-    float rate = w->instances.speed[row];
+    float rate = w->instances.speed[row] * base_rate(&m, s);
     if (s) {
         rate *= s->speed;
         if (s->speed_fn) {
-            float phase = anim_slot_clip_time(c, slot) / c->duration;
+            float phase = anim_motion_time(&m, slot->time) / m.length;
             float factor = s->speed_fn(s->ctx, w, handle_of(w, row), phase);
             rate *= isfinite(factor) ? factor : 1;
         }
     }
     out.rate = rate;
     if (!doomed(w, row)) {
-        advance_time(w, row, slot, c, dt * rate, &out);
+        advance_time(w, row, slot, &m, dt * rate, &out);
     }
     return out;
 }
@@ -190,12 +191,12 @@ static void exit_from(anim_world *w, uint32_t row, uint32_t p) {
     }
 }
 
-static core_handle freeze(anim_world *w, uint32_t row) {
+static core_handle freeze(anim_world *w, uint32_t row, uint32_t p) {
     const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
     core_arena *arena = anim_scratch(w, 0);
     size_t mark = core_arena_mark(arena);
     float *pose = anim_scratch_pose(arena, s);
-    anim_evaluate(w, row, arena, pose);
+    anim_evaluate_player(w, s, p, arena, pose);
     core_handle h = anim_snapshot_take(w, s, pose);
     core_arena_rewind(arena, mark);
     return h;
@@ -206,7 +207,7 @@ void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, fl
     bool interrupts = (w->players.flags[p] & ANIM_FADING) != 0;
     core_handle snapshot = CORE_NULL_HANDLE;
     if (interrupts) {
-        snapshot = length > 0 ? freeze(w, row) : CORE_NULL_HANDLE;
+        snapshot = length > 0 ? freeze(w, row, p) : CORE_NULL_HANDLE;
         exit_from(w, row, p);
     }
     set_slot(w, &w->players.from[p], w->players.now[p]);
@@ -245,7 +246,8 @@ static bool compare(float a, anim_compare how, float b) {
 
 static bool nearly_finished(const anim_world *w, uint32_t p, const slot_step *step, float length) {
     const anim_slot *now = &w->players.now[p];
-    float end = period(anim_get_clip(w, now->clip), now->loop);
+    anim_motion m = anim_slot_motion(w, p, now);
+    float end = period(&m);
     float ahead = step->rate * length;
     bool reaches = step->rate < 0 ? now->time + ahead <= 0 : now->time + ahead >= end;
     return step->wrapped || reaches;
@@ -268,18 +270,17 @@ static bool matches(anim_world *w, uint32_t row, uint32_t p, const anim_transiti
 
 // Where the target starts: at its beginning (its end when it plays backwards), or at the phase of
 // the state left.
-static float start_time(const anim_world *w, uint32_t p, const anim_state *to, bool sync) {
-    const anim_clip_res *target = anim_get_clip(w, to->clip);
-    const anim_slot *now = &w->players.now[p];
-    if (!sync || core_handle_is_null(now->clip)) {
-        return to->speed < 0 ? period(target, to->loop) : 0;
+static float start_time(const anim_world *w, uint32_t p, const anim_slot *to, const anim_state *s,
+                        bool sync) {
+    anim_motion target = anim_slot_motion(w, p, to);
+    anim_motion source = anim_slot_motion(w, p, &w->players.now[p]);
+    if (!sync || !source.clip[0]) {
+        return s->speed < 0 ? period(&target) : 0;
     }
-    const anim_clip_res *source = anim_get_clip(w, now->clip);
-    return now->time / period(source, now->loop) * period(target, to->loop);
+    return w->players.now[p].time / period(&source) * period(&target);
 }
 
-static void follow_transitions(anim_world *w, uint32_t row, const slot_step *step) {
-    uint32_t p = player_of(w, row);
+static void follow_transitions(anim_world *w, uint32_t row, uint32_t p, const slot_step *step) {
     int32_t state = w->players.now[p].state;
     if (state < 0 || (w->players.flags[p] & ANIM_LOCKED)) {
         return;
@@ -295,10 +296,8 @@ static void follow_transitions(anim_world *w, uint32_t row, const slot_step *ste
             return; // a condition changed the instance itself
         }
         const anim_state *to = &m->state[t->to];
-        anim_slot slot = {.clip = to->clip,
-                          .state = t->to,
-                          .loop = to->loop,
-                          .time = start_time(w, p, to, t->sync)};
+        anim_slot slot = {.clip = to->clip, .state = t->to, .loop = to->loop};
+        slot.time = start_time(w, p, &slot, to, t->sync);
         anim_player_start(w, row, p, slot, t->length, t->fade, t->uninterruptible);
         return;
     }
@@ -317,30 +316,39 @@ static void advance_fade(anim_world *w, uint32_t row, uint32_t p, float dt) {
     }
 }
 
-static void update_instance(anim_world *w, uint32_t row, float dt) {
-    uint32_t p = player_of(w, row);
-    w->instances.root_x[row] = w->instances.root_y[row] = w->instances.root_z[row] = 0;
-    bool fading = (w->players.flags[p] & ANIM_FADING) != 0;
-    slot_step step = advance(w, row, p, false, dt);
+static void update_player(anim_world *w, uint32_t row, uint32_t p, float dt) {
+    bool fading = (w->players.flags[p] & ANIM_FADING) != 0, base = p == player_of(w, row);
+    slot_step step = advance(w, row, p, false, dt), left = {0};
+    float weight = 1;
     if (fading && !doomed(w, row)) {
-        slot_step left = {0};
         if (core_handle_is_null(w->players.snapshot[p])) {
             left = advance(w, row, p, true, dt);
         }
         advance_fade(w, row, p, dt);
-        float weight = anim_fade_weight(w, p);
+        weight = anim_fade_weight(w, p);
+    }
+    if (base) { // layers do not move the root
         add_root(w, row, left.root, 1 - weight);
         add_root(w, row, step.root, weight);
-    } else {
-        add_root(w, row, step.root, 1);
     }
     if (!doomed(w, row)) {
-        follow_transitions(w, row, &step);
+        follow_transitions(w, row, p, &step);
     }
     w->players.events[p] = 0;
     const anim_state *now = state_of(w, p, &w->players.now[p]);
     if (now && now->on_tick && !doomed(w, row)) {
         now->on_tick(now->ctx, w, handle_of(w, row), dt);
+    }
+}
+
+static void update_instance(anim_world *w, uint32_t row, float dt) {
+    w->instances.root_x[row] = w->instances.root_y[row] = w->instances.root_z[row] = 0;
+    update_player(w, row, player_of(w, row), dt);
+    for (uint32_t i = 0; w->instances.layered[row] && i < ANIM_MAX_LAYERS; i++) {
+        uint32_t p = core_columns_row(&w->players.set, w->instances.layer[row].player[i]);
+        if (p != CORE_NO_ROW && !doomed(w, row)) {
+            update_player(w, row, p, dt);
+        }
     }
 }
 

@@ -25,8 +25,9 @@ static bool init_sets(anim_world *w, uint32_t instances) {
     return anim_resources_init(&w->skeletons, "anim.skeletons", MAX_RESOURCES) &&
            anim_resources_init(&w->clips, "anim.clips", MAX_RESOURCES) &&
            anim_resources_init(&w->machines, "anim.machines", MAX_RESOURCES) &&
+           anim_resources_init(&w->masks, "anim.masks", MAX_RESOURCES) &&
            anim_instances_init(&w->instances, "anim.instances", instances) &&
-           anim_players_init(&w->players, "anim.players", instances) &&
+           anim_players_init(&w->players, "anim.players", instances * (1 + ANIM_MAX_LAYERS)) &&
            anim_chunks_init(&w->chunks, "anim.snapshots", chunks);
 }
 
@@ -69,6 +70,7 @@ void anim_world_destroy(anim_world *w) {
     free_items(&w->skeletons, free_skeleton);
     free_items(&w->clips, anim_clip_free);
     free_items(&w->machines, core_free);
+    free_items(&w->masks, core_free);
     core_columns_release(&w->instances.set);
     core_columns_release(&w->players.set);
     core_columns_release(&w->chunks.set);
@@ -120,8 +122,8 @@ int anim_world_state(const anim_world *w, const core_columns **out, int capacity
 size_t anim_world_bytes(const anim_world *w) {
     size_t bytes = sizeof *w + core_columns_bytes(&w->skeletons.set) +
                    core_columns_bytes(&w->clips.set) + core_columns_bytes(&w->machines.set) +
-                   core_columns_bytes(&w->instances.set) + core_columns_bytes(&w->players.set) +
-                   core_columns_bytes(&w->chunks.set) +
+                   core_columns_bytes(&w->masks.set) + core_columns_bytes(&w->instances.set) +
+                   core_columns_bytes(&w->players.set) + core_columns_bytes(&w->chunks.set) +
                    (size_t)w->bones_committed * ANIM_PALETTE_FLOATS * sizeof(float) +
                    w->event_capacity * sizeof(anim_event);
     for (uint32_t i = 0; i < w->scratch_count; i++) {
@@ -155,6 +157,13 @@ anim_machine_res *anim_get_machine(const anim_world *w, anim_machine h) {
     return get(&w->machines, h, "state machine");
 }
 
+anim_mask_res *anim_get_mask(const anim_world *w, anim_mask h) {
+    return get(&w->masks, h, "bone mask");
+}
+
+bool anim_mask_alive(const anim_world *w, anim_mask h) {
+    return core_columns_row(&w->masks.set, h) != CORE_NO_ROW;
+}
 bool anim_skeleton_alive(const anim_world *w, anim_skeleton h) {
     return core_columns_row(&w->skeletons.set, h) != CORE_NO_ROW;
 }

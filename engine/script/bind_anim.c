@@ -190,6 +190,54 @@ static int new_clip(script *s, lua_State *L, void *args) {
     return 1;
 }
 
+typedef struct mask_args {
+    core_handle skeleton;
+    int bones;
+    float weight;
+} mask_args;
+
+// Gives the weight to a bone and all below it.
+static void weigh(anim_world *w, anim_skeleton skeleton, uint32_t bone, float weight, float *out) {
+    uint32_t count = anim_skeleton_bone_count(w, skeleton);
+    for (uint32_t b = bone; b < count; b++) {
+        int32_t above = (int32_t)b;
+        while (above > (int32_t)bone) {
+            above = anim_skeleton_parent(w, skeleton, (uint32_t)above);
+        }
+        out[b] = above == (int32_t)bone ? weight : out[b];
+    }
+}
+
+static int new_mask(script *s, lua_State *L, void *args) {
+    const mask_args *a = args;
+    anim_world *w = world_of(s);
+    float *weight = lua_newuserdata(L, ANIM_MAX_BONES * sizeof *weight);
+    memset(weight, 0, ANIM_MAX_BONES * sizeof *weight);
+    for (int i = 1;; i++) {
+        lua_rawgeti(L, a->bones, i);
+        if (lua_isnil(L, -1)) {
+            break;
+        }
+        const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
+        int32_t bone = anim_skeleton_find(w, a->skeleton, name);
+        if (bone < 0) {
+            bind_error(L, "corsac.anim.newMask: bones[%d]: the skeleton has no bone \"%s\"", i,
+                       name);
+        }
+        weigh(w, a->skeleton, (uint32_t)bone, a->weight, weight);
+        lua_pop(L, 1);
+    }
+    anim_mask mask = anim_mask_create(w, a->skeleton, weight);
+    if (core_handle_is_null(mask)) {
+        bind_fail(L);
+    }
+    bind_push(s, L, &bind_mask_type, mask);
+    return 1;
+}
+static int mask_destroy(script *s, lua_State *L, void *args) {
+    return done(L, anim_mask_destroy(world_of(s), *(core_handle *)args));
+}
+
 typedef struct animator_args {
     core_handle skeleton, machine, clip;
 } animator_args;
@@ -236,6 +284,9 @@ static bool clip_alive(script *s, core_handle h) {
 }
 static bool machine_alive(script *s, core_handle h) {
     return scene_anim_if(s->scene) && anim_machine_alive(scene_anim_if(s->scene), h);
+}
+static bool mask_alive(script *s, core_handle h) {
+    return scene_anim_if(s->scene) && anim_mask_alive(scene_anim_if(s->scene), h);
 }
 static bool animator_alive(script *s, core_handle h) {
     return scene_anim_if(s->scene) && anim_instance_alive(scene_anim_if(s->scene), h);
@@ -348,6 +399,12 @@ static const bind_fn machine_methods[] = {
      .run = machine_destroy},
     {0}};
 
+static const bind_fn mask_methods[] = {{"destroy", "Removes it; layers that use it must go first.",
+                                        NULL, NULL, SELF, BIND_SIM, .run = mask_destroy},
+                                       {0}};
+
+const bind_type bind_mask_type = {"Mask", "Which bones a layer moves, and how much.", mask_alive,
+                                  mask_methods};
 const bind_type bind_model_type = {"Model", "Meshes, skeleton and clips read from a file.",
                                    model_alive, model_methods};
 const bind_type bind_skeleton_type = {"Skeleton", "Bones with a bind pose.", skeleton_alive,
@@ -420,6 +477,13 @@ static const bind_fn functions[] = {
                 .fields = bind_machine_fields}),
      BIND_RETURNS({"machine", "corsac.Machine", NULL}), sizeof(bind_machine_call), BIND_SIM,
      .run = bind_machine_new},
+    {"newMask", "Which bones a layer moves: those named and all below them.",
+     BIND_ARGS(
+         {"skeleton", BIND_OBJECT, BIND_AT(mask_args, skeleton), "", .type = &bind_skeleton_type},
+         {"bones", BIND_TABLE, BIND_AT(mask_args, bones), "list of names"},
+         {"weight", BIND_FLOAT, BIND_AT(mask_args, weight), "", NULL, BIND_BETWEEN, .max = 1,
+          .optional = true, .def = 1}),
+     BIND_RETURNS({"mask", "corsac.Mask", NULL}), sizeof(mask_args), BIND_SIM, .run = new_mask},
     {"newAnimator", "Moves a skeleton without an entity.",
      BIND_ARGS({"skeleton", BIND_OBJECT, BIND_AT(animator_args, skeleton), "what it moves",
                 .type = &bind_skeleton_type},
@@ -435,7 +499,12 @@ static const bind_fn functions[] = {
 
 static const bind_module modules[] = {
     {"corsac.anim", "Skeletons, clips and state machines.", functions}, {0}};
-static const bind_type *const types[] = {&bind_model_type,   &bind_skeleton_type, &bind_clip_type,
-                                         &bind_machine_type, &bind_animator_type, NULL};
+static const bind_type *const types[] = {&bind_model_type,
+                                         &bind_skeleton_type,
+                                         &bind_clip_type,
+                                         &bind_machine_type,
+                                         &bind_animator_type,
+                                         &bind_mask_type,
+                                         NULL};
 
 const bind_room bind_anim_room = {"anim", modules, types};

@@ -5,7 +5,7 @@
 #include "script/bind.h"
 
 extern const bind_type bind_model_type, bind_skeleton_type, bind_clip_type, bind_machine_type,
-    bind_animator_type;
+    bind_animator_type, bind_mask_type;
 
 // Declared in bind_animator.c: the methods of Animator.
 extern const bind_fn bind_animator_methods[];

@@ -37,6 +37,41 @@ static int go(script *s, lua_State *L, void *args) {
     return done(L, anim_instance_go(world_of(s), a->self, a->state, a->length, (anim_fade)a->fade));
 }
 
+typedef struct layer_options {
+    int64_t layer;
+    core_handle machine, clip, mask;
+    int loop;
+    float weight;
+    bool additive;
+} layer_options;
+typedef struct layer_args {
+    core_handle self;
+    layer_options options;
+} layer_args;
+static int set_layer(script *s, lua_State *L, void *args) {
+    const layer_args *a = args;
+    const layer_options *o = &a->options;
+    anim_layer_desc d = anim_layer_desc_default();
+    d.machine = o->machine;
+    d.clip = o->clip;
+    d.mask = o->mask;
+    d.loop = (anim_loop)o->loop;
+    d.weight = o->weight;
+    d.additive = o->additive;
+    return done(L, anim_instance_set_layer(world_of(s), a->self, (uint32_t)o->layer, &d));
+}
+
+typedef struct weight_args {
+    core_handle self;
+    int64_t layer;
+    float weight;
+} weight_args;
+static int set_layer_weight(script *s, lua_State *L, void *args) {
+    const weight_args *a = args;
+    return done(
+        L, anim_instance_set_layer_weight(world_of(s), a->self, (uint32_t)a->layer, a->weight));
+}
+
 typedef struct text_args {
     core_handle self;
     const char *text;
@@ -161,7 +196,34 @@ static int is_destroyed(script *s, lua_State *L, void *args) {
     }
 #define XYZ BIND_RETURNS({"x", "number", "m"}, {"y", "number", "m"}, {"z", "number", "m"})
 
+static const bind_arg layer_fields[] = {
+    {"layer", BIND_INT, BIND_AT(layer_options, layer), "1 is the lowest above the base", NULL,
+     BIND_BETWEEN, .min = 1, .max = ANIM_MAX_LAYERS, .optional = true, .def = 1},
+    {"machine", BIND_OBJECT, BIND_AT(layer_options, machine), "", .optional = true,
+     .def_text = "nil", .type = &bind_machine_type},
+    {"clip", BIND_OBJECT, BIND_AT(layer_options, clip), "without machine and clip it is removed",
+     .optional = true, .def_text = "nil", .type = &bind_clip_type},
+    {"loop", BIND_ENUM, BIND_AT(layer_options, loop), "what happens at the clip's end",
+     .optional = true, .values = LOOPS},
+    {"mask", BIND_OBJECT, BIND_AT(layer_options, mask), "bones it moves", .optional = true,
+     .def_text = "all", .type = &bind_mask_type},
+    {"weight", BIND_FLOAT, BIND_AT(layer_options, weight), "", NULL, BIND_BETWEEN, .max = 1,
+     .optional = true, .def = 1},
+    {"additive", BIND_BOOL, BIND_AT(layer_options, additive),
+     "adds the clip's change since its first pose", .optional = true},
+    {0}};
+
 const bind_fn bind_animator_methods[] = {
+    {"setLayer", "Plays a clip or machine over the base, on all or some bones.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(layer_args, options), "the layer",
+                .fields = layer_fields}),
+     NULL, sizeof(layer_args), BIND_LOAD | BIND_FIXED, .mod = true, .cost = 100, .run = set_layer},
+    {"setLayerWeight", "How much of a layer is seen.",
+     BIND_ARGS(
+         {"layer", BIND_INT, BIND_AT(weight_args, layer), "", NULL, BIND_BETWEEN, .min = 1,
+          .max = ANIM_MAX_LAYERS},
+         {"weight", BIND_FLOAT, BIND_AT(weight_args, weight), "", NULL, BIND_BETWEEN, .max = 1}),
+     NULL, sizeof(weight_args), BIND_SIM, .mod = true, .cost = 8, .run = set_layer_weight},
     {"play", "Plays a clip, whatever its machine says, fading from the pose of this moment.",
      BIND_ARGS({"clip", BIND_OBJECT, BIND_AT(play_args, clip), "", .type = &bind_clip_type},
                FADE_ARGS(play_args),

@@ -5,9 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct state_options {
-    const char *name;
+typedef struct point_options {
     core_handle clip;
+    float value;
+} point_options;
+typedef struct state_options {
+    const char *name, *blend_parameter;
+    core_handle clip;
+    bind_list blend;
     int loop;
     float speed;
     int on_enter, on_exit, on_tick, get_speed; // checked here, fetched again from the table
@@ -115,10 +120,27 @@ static lua_functions *functions_of(script *s, lua_State *L, const char *list, ui
     return f;
 }
 
+// Points of a blend tree, in memory of Lua's that lives as long as the call.
+static const anim_blend_point *read_points(lua_State *L, const bind_list *list) {
+    if (list->count == 0) {
+        return NULL;
+    }
+    luaL_checkstack(L, 4, "blend trees");
+    anim_blend_point *point = lua_newuserdata(L, list->count * sizeof *point);
+    for (uint32_t i = 0; i < list->count; i++) {
+        const point_options *o = (const point_options *)list->items + i;
+        point[i] = (anim_blend_point){o->clip, o->value};
+    }
+    return point;
+}
+
 static void read_state(script *s, lua_State *L, const state_options *o, uint32_t i,
                        anim_state_desc *out) {
     *out = (anim_state_desc){
         .name = o->name, .clip = o->clip, .loop = (anim_loop)o->loop, .speed = o->speed};
+    out->blend = read_points(L, &o->blend);
+    out->blend_count = o->blend.count;
+    out->blend_parameter = o->blend_parameter;
     if (o->has_enter || o->has_exit || o->has_tick || o->has_get_speed) {
         out->ctx = functions_of(s, L, "states", i);
         out->on_enter = o->has_enter ? call_enter : NULL;
@@ -219,9 +241,21 @@ int bind_machine_new(script *s, lua_State *L, void *args) {
                                                         BIND_GIVEN(T, flag)                        \
     }
 
+static const bind_arg point_fields[] = {
+    {"clip", BIND_OBJECT, BIND_AT(point_options, clip), "", .type = &bind_clip_type},
+    {"value", BIND_FLOAT, BIND_AT(point_options, value),
+     "of the parameter at which it plays alone"},
+    {0}};
+
 static const bind_arg state_fields[] = {
     {"name", BIND_STRING, BIND_AT(state_options, name), "unique in the machine"},
-    {"clip", BIND_OBJECT, BIND_AT(state_options, clip), "what it plays", .type = &bind_clip_type},
+    {"clip", BIND_OBJECT, BIND_AT(state_options, clip), "what it plays", .optional = true,
+     .def_text = "none", .type = &bind_clip_type},
+    {"blend", BIND_LIST, BIND_AT(state_options, blend),
+     "in place of clip: looping clips between which a parameter blends, values ascending",
+     .optional = true, .fields = point_fields, .size = sizeof(point_options)},
+    {"blendParameter", BIND_STRING, BIND_AT(state_options, blend_parameter),
+     "a parameter of the machine", .optional = true, .def_text = NULL},
     {"loop", BIND_ENUM, BIND_AT(state_options, loop), "what happens at the clip's end",
      .optional = true, .values = "loop|once|pingpong"},
     {"speed", BIND_FLOAT, BIND_AT(state_options, speed), "factor on time; negative: backwards",
