@@ -302,6 +302,24 @@ function Machine:destroy() end
 ---@class corsac.Animator
 local Animator = {}
 
+---@class Animator.setLayer.options
+---@field layer? integer 1 is the lowest above the base
+---@field machine? corsac.Machine
+---@field clip? corsac.Clip without machine and clip it is removed
+---@field loop? "loop"|"once"|"pingpong" what happens at the clip's end
+---@field mask? corsac.Mask bones it moves
+---@field weight? number
+---@field additive? boolean adds the clip's change since its first pose
+
+---Plays a clip or machine over the base, on all or some bones.
+---@param options Animator.setLayer.options the layer
+function Animator:setLayer(options) end
+
+---How much of a layer is seen.
+---@param layer integer
+---@param weight number
+function Animator:setLayerWeight(layer, weight) end
+
 ---Plays a clip, whatever its machine says, fading from the pose of this moment.
 ---@param clip corsac.Clip
 ---@param length? number of the cross-fade
@@ -385,6 +403,13 @@ function Animator:isDestroyed() end
 
 ---Removes it; its entity then shows the bind pose.
 function Animator:destroy() end
+
+---Which bones a layer moves, and how much.
+---@class corsac.Mask
+local Mask = {}
+
+---Removes it; layers that use it must go first.
+function Mask:destroy() end
 
 ---Waypoints and the links between them.
 ---@class corsac.Graph
@@ -1357,9 +1382,15 @@ function corsac.anim.newSkeleton(bones) end
 ---@return corsac.Clip clip
 function corsac.anim.newClip(options) end
 
+---@class corsac.anim.newMachine.options.states.blend
+---@field clip corsac.Clip
+---@field value number of the parameter at which it plays alone
+
 ---@class corsac.anim.newMachine.options.states
 ---@field name string unique in the machine
----@field clip corsac.Clip what it plays
+---@field clip? corsac.Clip what it plays
+---@field blend? corsac.anim.newMachine.options.states.blend[] in place of clip: looping clips between which a parameter blends, values ascending
+---@field blendParameter? string a parameter of the machine
 ---@field loop? "loop"|"once"|"pingpong" what happens at the clip's end
 ---@field speed? number factor on time; negative: backwards
 ---@field onEnter? function called with the animator
@@ -1390,6 +1421,13 @@ function corsac.anim.newClip(options) end
 ---@param options corsac.anim.newMachine.options the machine
 ---@return corsac.Machine machine
 function corsac.anim.newMachine(options) end
+
+---Which bones a layer moves: those named and all below them.
+---@param skeleton corsac.Skeleton
+---@param bones table list of names
+---@param weight? number
+---@return corsac.Mask mask
+function corsac.anim.newMask(skeleton, bones, weight) end
 
 ---Moves a skeleton without an entity.
 ---@param skeleton corsac.Skeleton what it moves
