@@ -142,8 +142,8 @@ static bool between_steps(app_run *r) {
             strcpy(r->entry, r->next_scene);
         }
         r->next_scene[0] = 0;
-        r->reload = false;
         app_scene_close(r);
+        r->reload = false;
         return app_scene_open(r);
     }
     return true;

@@ -180,6 +180,18 @@ static void keep_run_data(app_run *r) {
     }
 }
 
+// What the scene leaves in the exit code. One that is loaded again has another chance.
+static void judge(app_run *r) {
+    if (r->reload) {
+        return;
+    }
+    if (script_error_count(r->script)) {
+        app_fail(r, APP_EXIT_SCRIPT);
+    } else if (r->failed == APP_EXIT_FINE) {
+        r->expectations_missed += script_check_expectations(r->script);
+    }
+}
+
 void app_scene_close(app_run *r) {
     if (r->script) {
         script_quit(r->script);
@@ -189,12 +201,7 @@ void app_scene_close(app_run *r) {
             r->sampled_at = r->report.steps;
         }
         app_report_finish(&r->report, r->scene, script_bytes(r->script));
-        if (r->failed == APP_EXIT_FINE && !script_error_count(r->script)) {
-            r->expectations_missed += script_check_expectations(r->script);
-        }
-        if (script_error_count(r->script)) {
-            app_fail(r, APP_EXIT_SCRIPT);
-        }
+        judge(r);
         script_destroy(r->script);
     }
     app_sound_leave_scene(&r->sound);

@@ -24,13 +24,21 @@ class Result:
 def corsac(*args, window=False, limit=120, env=None, cwd=ROOT, program=CORSAC):
     """Runs `corsac ARGS`; with window=True under xvfb-run, or skips the test where that is missing."""
     command = [str(program), *map(str, args)]
-    if window:
-        if not shutil.which("xvfb-run"):
-            raise unittest.SkipTest("xvfb-run is not installed")
-        command = ["xvfb-run", "-a", *command]
-    return Result(subprocess.run(
-        command, cwd=cwd, env={**os.environ, **(env or {})}, stdin=subprocess.DEVNULL,
-        capture_output=True, text=True, timeout=limit))
+    return Result(run(command, window, cwd=cwd, env={**os.environ, **(env or {})}, timeout=limit))
+
+
+def run(command, window, **options):
+    """Runs a command, with window=True on an X display of its own."""
+    if not window:
+        return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, **options)
+    if not shutil.which("xvfb-run"):
+        raise unittest.SkipTest("xvfb-run is not installed")
+    for _ in range(5):  # xvfb-run -a does not lock the display number that it picks
+        done = subprocess.run(["xvfb-run", "-a", *command], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              **options)
+        if "Xvfb failed to start" not in done.stderr + done.stdout:
+            break
+    return done
 
 
 class SceneCase(unittest.TestCase):

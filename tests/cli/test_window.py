@@ -1,0 +1,81 @@
+"""A window: keys and pointer of a real X display, overlay, pause, single step, error screen, reload."""
+
+import sys
+import unittest
+from pathlib import Path
+
+import png
+from support import CORSAC, ROOT, SceneCase, run
+
+SCENE = """
+local heard = {}
+function corsac.conf(t) t.actions = { go = "d" } end
+function corsac.load()
+  corsac.scene.spawn{ position = { 0, 0, 0 }, mesh = "box" }
+end
+function corsac.event(name, a, b, c)
+  corsac.log("heard " .. name .. " " .. tostring(a) .. " " .. tostring(b))
+end
+local held, was = 0, 0
+function corsac.fixed()
+  if corsac.input.isDown("go") then held = held + 1 end
+  corsac.metrics.set("held", held)
+end
+"""
+
+
+class Window(SceneCase):
+    def press(self, keys, text, *args):
+        scene = self.write("scene.lua", text)
+        helper = Path(__file__).with_name("xkeys.py")
+        command = [sys.executable, helper, f"wait:1 move:100,60 {keys}", CORSAC, "run", scene,
+                   "--size", "320x200", *args]
+        done = run([str(word) for word in command], True, cwd=ROOT, timeout=90)
+        if done.returncode == 77:
+            self.skipTest("libXtst.so.6 is not installed")
+        return done.returncode, done.stdout, done.stderr
+
+    def test_keys_reach_the_script_and_escape_ends_the_run(self):
+        code, out, err = self.press("down:d wait:0.5 up:d click:1 wait:0.2 key:Escape", SCENE, "--metrics", "-")
+        self.assertEqual(code, 0, err)
+        for text in ("heard key d 1", "heard key d 0", "heard text d nil", "heard mouse mouse1 1", "heard move 100 60"):
+            self.assertIn(text, err.replace(".0", ""))
+        held = float(out.split('"held":')[1].split("\n")[0].rstrip(","))
+        self.assertTrue(15 <= held <= 60, held)
+
+    def test_escape_belongs_to_a_game_that_binds_it(self):
+        bound = SCENE.replace('go = "d"', 'go = "d", menu = "escape"')
+        code, _, err = self.press("key:Escape wait:0.3", bound, "--steps", 240)
+        self.assertEqual(code, 0, err)
+        self.assertIn("heard key escape 1", err)
+
+    def test_overlay(self):
+        shots = []
+        for keys in ("wait:0.1", "key:F1"):
+            path = self.dir / f"{len(shots)}.png"
+            self.assertEqual(self.press(keys, SCENE, "--steps", 200, "--shot", f"{path}@200")[0], 0)
+            shots.append(path)
+        self.assertGreater(png.compare(*shots), 0.02)
+
+    def test_pause_and_single_step(self):
+        code, out, err = self.press("key:F2 wait:0.8 key:F3 wait:0.2 key:F3 wait:0.2 key:Escape",
+                                    "function corsac.fixed() corsac.log('step ' .. corsac.getStep()) end")
+        self.assertEqual(code, 0, err)
+        steps = err.count("step ")
+        free, _, _ = self.press("wait:1.2 key:Escape",
+                                "function corsac.fixed() corsac.log('step ' .. corsac.getStep()) end")
+        self.assertEqual(free, 0)
+        self.assertTrue(20 < steps < 130, steps)
+
+    def test_an_error_shows_and_f5_loads_again(self):
+        text = """
+            function corsac.load() corsac.log("loaded") end
+            function corsac.fixed() if corsac.getStep() == 20 then boom() end end"""
+        code, _, err = self.press("wait:0.6 key:F5 wait:0.8 key:Escape", text)
+        self.assertEqual(code, 1)
+        self.assertEqual(err.count("loaded"), 2, err)
+        self.assertEqual(err.count("scene.lua:3"), 4, err)  # said and traced, twice
+
+
+if __name__ == "__main__":
+    unittest.main()
