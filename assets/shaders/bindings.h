@@ -28,6 +28,7 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_SSBO_QUADS           6
 #define GFX_SSBO_ROWS            7
 #define GFX_SSBO_SHADOWS         8
+#define GFX_SSBO_CLUSTER_GRID    9
 
 // Texture units.
 #define GFX_TEX_BASE_COLOR         0
@@ -103,6 +104,15 @@ struct gfx_shadow_block {
                       // side; size of the source: metres, or tangent of its angular radius
     GFX_VEC4(depth);  // orthographic: depth range (m), 0; perspective: near plane (m), 1; end of
                       // the cascade (view depth, m); layer
+};
+
+#define GFX_CLUSTER_GROUP 64          // threads of a group of cluster.comp
+#define GFX_CLUSTER_ALL   0x80000000u // of a cell's offset: the cell is lit by all lights
+
+struct gfx_cluster_block { // what cluster.comp knows of the grid
+    GFX_UVEC4(size);       // columns, rows, slices; lights
+    GFX_VEC4(lens);        // half extents at depth 1; 1 with perspective
+    GFX_VEC4(depth[17]);   // bounds of the slices
 };
 
 struct gfx_instance_block {

@@ -64,9 +64,11 @@ vec3 directLight(Surface s) {
     }
 #ifdef USE_CLUSTERED_RENDERING
     uint cell = clusterCell();
-    uint end = clusterOffset[cell + 1u];
-    for (uint i = clusterOffset[cell]; i < end; ++i) {
-        sum += localLight(lights[directional + clusterLight[i]], s);
+    uint first = clusterOffset[cell], end = clusterOffset[cell + 1u] & ~GFX_CLUSTER_ALL;
+    bool all = (first & GFX_CLUSTER_ALL) != 0u; // the list was longer than the cap
+    end = all ? u_view.light_count.y : end;
+    for (uint i = all ? 0u : first; i < end; ++i) {
+        sum += localLight(lights[directional + (all ? i : clusterLight[i])], s);
     }
 #else
     uint end = directional + u_view.light_count.y;

@@ -26,17 +26,32 @@ gfx_world_desc gfx_world_desc_default(void);
 gfx_world *gfx_world_create(const gfx_world_desc *desc);
 void gfx_world_destroy(gfx_world *world);
 size_t gfx_world_bytes(const gfx_world *world);
-void gfx_world_counts(const gfx_world *world,
-                      core_metrics *metrics); // lights, clusters, light_refs, draws, triangles
+// Sets lights, clusters, light_refs, draws, triangles.
+void gfx_world_counts(const gfx_world *world, core_metrics *metrics);
+typedef struct gfx_stats { // of the last frame
+    uint32_t clusters, light_refs;
+    uint32_t capped; // cells with more lights than cell_cap
+    uint32_t draws, programs, triangles;
+} gfx_stats;
+gfx_stats gfx_world_stats(const gfx_world *world);
 // Settings by name, as --set gfx.NAME=VALUE reaches them. False + core_fail naming the nearest name
 // or the allowed values.
-//   render      auto (clustered from 4 point and spot lights on) | forward | clustered | none
-//   clusters    cells as XxYxZ, each 1..64, default 16x9x24
-//   slices      exponential | linear
-//   first_slice m, the end of the first exponential slice, default 5; 0: none, all from the near
-//   plane assign      naive | per_light | simd: how lights are assigned to cells exposure    factor
-//   before the tone map, > 0, default 1 tonemap     neutral (Khronos PBR Neutral) | linear
-//   instancing  on | off (off: one draw call per instance; the baseline of the draw-count chart)
+//   render       auto (clustered from 4 point and spot lights on) | forward | clustered | none
+//   clusters     cells as XxYxZ, each 1..64, default 16x9x24
+//   slices       exponential | linear
+//   first_slice  m, end of the first exponential slice, default 5; 0: none, all from near on
+//   assign       naive | per_light | simd | gpu: how lights are assigned to cells
+//   cell_cap     most lights in a cell's list, default 0: any number. Cells beyond are lit by
+//                all lights, rightly and slowly, and counted in gfx_stats; gpu has no cap
+//   exposure     factor before the tone map, > 0, default 1
+//   tonemap      neutral (Khronos PBR Neutral) | linear
+//   shadows      off | pcf (filtered over 3 x 3 texels) | soft (wider the farther the blocker)
+//   shadow_size  texels of a map's side, 16..8192, default 1024
+//   shadow_distance  m of view depth that a sun's cascades cover, default 80
+//   cascades     of a sun, 1..4, default 3
+//   prepass      on | off: depth first, so that no hidden fragment is shaded
+//   culling      on | off: skip what is outside the view
+//   instancing   on | off (off: one draw call per instance, the baseline of the draw counts)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);
 
 typedef enum gfx_light_type { GFX_POINT, GFX_SPOT, GFX_DIRECTIONAL } gfx_light_type;

@@ -335,3 +335,20 @@ void gfx_clusters_assign(gfx_clusters *c, const gfx_cluster_grid *grid,
         break;
     }
 }
+
+uint32_t gfx_clusters_cap(gfx_clusters *c, uint32_t cells, uint32_t cap, uint32_t mark) {
+    uint32_t from = 0, to = 0, capped = 0;
+    for (uint32_t cell = 0; cell < cells; ++cell) {
+        uint32_t end = c->offset[cell + 1], count = end - from;
+        bool over = count > cap;
+        if (!over && to != from) {
+            memmove(c->light + to, c->light + from, count * sizeof *c->light);
+        }
+        c->offset[cell] = to | (over ? mark : 0);
+        to += over ? 0 : count;
+        capped += over;
+        from = end;
+    }
+    c->offset[cells] = c->total = to;
+    return capped;
+}

@@ -54,7 +54,9 @@ typedef enum gfx_cluster_method {
     GFX_CLUSTER_NAIVE,     // every cell's box against every light: the reference
     GFX_CLUSTER_PER_LIGHT, // exact bounds of each light in each slice, scalar
     GFX_CLUSTER_SIMD,      // the same, refined by row, in vectors and threads
-    GFX_CLUSTER_METHODS
+    GFX_CLUSTER_METHODS,
+    GFX_CLUSTER_GPU =
+        GFX_CLUSTER_METHODS // naive in a compute shader: the device's, not of this file
 } gfx_cluster_method;
 const char *gfx_cluster_method_name(gfx_cluster_method method);
 
@@ -71,6 +73,9 @@ typedef struct gfx_clusters { // zero-initialise; keeps its memory between calls
 void gfx_clusters_assign(gfx_clusters *c, const gfx_cluster_grid *grid,
                          const gfx_cluster_lights *lights, gfx_cluster_method method,
                          core_jobs *jobs);
+// Empties lists of more than `cap` lights and marks their cells by `mark` in the offset, for the
+// shader to take all lights there; returns how many.
+uint32_t gfx_clusters_cap(gfx_clusters *c, uint32_t cells, uint32_t cap, uint32_t mark);
 void gfx_clusters_release(gfx_clusters *c);
 
 // First 64-byte boundary in a block that was made CORE_ALIGN bytes too large.

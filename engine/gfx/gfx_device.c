@@ -134,14 +134,15 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_quads_release(&d->quads);
     gfx_geometry_release(&d->geometry);
     gfx_shaders_release(&d->shaders);
-    gfx_stream *const streams[] = {&d->view_block,   &d->light_block, &d->instance_block,
-                                   &d->bone_block,   &d->draw_block,  &d->cluster_offsets,
-                                   &d->cluster_lists};
+    gfx_stream *const streams[] = {&d->view_block,    &d->light_block, &d->instance_block,
+                                   &d->bone_block,    &d->draw_block,  &d->cluster_offsets,
+                                   &d->cluster_lists, &d->cluster_grid};
     for (size_t i = 0; i < CORE_COUNT_OF(streams); ++i) {
         gfx_stream_release(streams[i]);
     }
     gfx_shadows_release(&d->shadows);
     gfx_environment_release(&d->environment);
+    gfx_cluster_gpu_release(&d->cluster_gpu);
     gfx_clusters_release(&d->clusters);
     gfx_cluster_lights_release(&d->cluster_lights);
     gfx_materials_release(&d->materials);

@@ -161,8 +161,16 @@ typedef struct gfx_light_upload {
 // View-space bounding spheres of all point and spot lights, in the order of the light block.
 void gfx_cluster_lights_fill(gfx_cluster_lights *out, const gfx_lights *lights,
                              const gfx_view *view);
+typedef struct gfx_cluster_gpu {
+    GLuint offsets, lists;
+    size_t offset_bytes, list_bytes;
+} gfx_cluster_gpu;
+// Assigns on the GPU and binds the lists; *refs: their entries.
+bool gfx_clusters_assign_gpu(gfx_device *device, const gfx_cluster_grid *grid,
+                             const gfx_cluster_lights *lights, uint32_t *refs);
+void gfx_cluster_gpu_release(gfx_cluster_gpu *c);
 // Fills and binds the light block and, when the view is drawn clustered, its lists.
-void gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *view,
+bool gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *view,
                        gfx_light_upload *out);
 
 // ---- screen-space quads (gfx_quads.c, gfx_font.c) ----
@@ -206,7 +214,8 @@ struct gfx_device {
     GLuint empty_vao, dfg_texture;
     gfx_geometry geometry;
     gfx_stream view_block, light_block, instance_block, bone_block, draw_block, row_block;
-    gfx_stream cluster_offsets, cluster_lists;
+    gfx_stream cluster_offsets, cluster_lists, cluster_grid;
+    gfx_cluster_gpu cluster_gpu;
     gfx_clusters clusters;
     gfx_cluster_lights cluster_lights;
     gfx_shadows shadows;

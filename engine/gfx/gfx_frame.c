@@ -169,11 +169,11 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
         return false;
     }
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CLUSTER);
-    gfx_lights_upload(d, world, &view, &lights);
+    ok = gfx_lights_upload(d, world, &view, &lights);
     core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_MATERIALS, d->materials.buffer);
-    ok = gfx_shadows_draw(d, world) && gfx_environment_update(d, world);
+    ok = ok && gfx_shadows_draw(d, world) && gfx_environment_update(d, world);
     upload_view(d, world, &view, &lights);
     ok = ok && pass_scene(d, world, &list, scene_features(d, world, lights.clustered)) &&
          pass_tonemap(d) && gfx_quads_draw(d, world);
@@ -184,7 +184,7 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
 bool gfx_device_render(gfx_device *device, gfx_world *world) {
     gfx_device *d = device;
     uint32_t errors = d->gl_errors;
-    world->stats = (gfx_frame_stats){0};
+    world->stats = (gfx_stats){0};
     d->passes = 0;
     if (world->settings.render == GFX_RENDER_NONE) {
         return true;

@@ -106,16 +106,13 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     uint32_t grid[3];
     int linear_slices, assign; // assign: gfx_cluster_method
     float first_slice;         // m
+    float cell_cap;            // lights, 0: none
     float exposure;
     int tonemap;                      // GFX_TONEMAP_*
     int instancing, culling, prepass; // switches
     int shadows;                      // GFX_SHADOWS_*
     float shadow_size, shadow_distance, cascades;
 } gfx_settings;
-
-typedef struct gfx_frame_stats {
-    uint32_t clusters, light_refs, draws, programs, triangles;
-} gfx_frame_stats;
 
 struct gfx_world {
     uint64_t id; // no two worlds of a process share it: devices key their copies by it
@@ -136,7 +133,7 @@ struct gfx_world {
     char panorama_path[CORE_NAME_MAX];
     gfx_growing commands, text;
     size_t heap_bytes; // of meshes and palettes
-    gfx_frame_stats stats;
+    gfx_stats stats;
 };
 
 // A world that was given no light of any kind is lit by a sun of our own.

@@ -99,7 +99,7 @@ void gfx_cluster_lights_fill(gfx_cluster_lights *out, const gfx_lights *l, const
     out->count = at;
 }
 
-static void upload_lists(gfx_device *d, gfx_world *world, const gfx_clusters *c, uint32_t cells) {
+static void upload_lists(gfx_device *d, const gfx_clusters *c, uint32_t cells) {
     size_t offsets = (cells + 1) * sizeof *c->offset, lists = c->total * sizeof *c->light;
     memcpy(gfx_stream_begin(&d->cluster_offsets, offsets, d->frame), c->offset, offsets);
     void *list = gfx_stream_begin(&d->cluster_lists, lists, d->frame);
@@ -110,11 +110,9 @@ static void upload_lists(gfx_device *d, gfx_world *world, const gfx_clusters *c,
                     offsets, d->frame);
     gfx_stream_bind(&d->cluster_lists, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_CLUSTER_LIGHTS, lists,
                     d->frame);
-    world->stats.clusters = cells;
-    world->stats.light_refs = c->total;
 }
 
-void gfx_lights_upload(gfx_device *d, gfx_world *world, const gfx_view *view,
+bool gfx_lights_upload(gfx_device *d, gfx_world *world, const gfx_view *view,
                        gfx_light_upload *out) {
     const gfx_settings *s = &world->settings;
     *out = (gfx_light_upload){0};
@@ -122,12 +120,23 @@ void gfx_lights_upload(gfx_device *d, gfx_world *world, const gfx_view *view,
     out->clustered = s->render == GFX_RENDER_CLUSTERED ||
                      (s->render == GFX_RENDER_AUTO && out->local >= AUTO_CLUSTERED);
     if (!out->clustered) {
-        return;
+        return true;
     }
     gfx_cluster_grid_make(&out->grid, s->grid, s->linear_slices, s->first_slice, view->orthographic,
                           view->tan_x, view->tan_y, view->near_plane, view->virtual_far);
     gfx_cluster_lights_fill(&d->cluster_lights, &world->lights, view);
+    uint32_t cells = gfx_cluster_cells(&out->grid);
+    world->stats.clusters = cells;
+    if (s->assign == GFX_CLUSTER_GPU) {
+        return gfx_clusters_assign_gpu(d, &out->grid, &d->cluster_lights, &world->stats.light_refs);
+    }
     gfx_clusters_assign(&d->clusters, &out->grid, &d->cluster_lights, (gfx_cluster_method)s->assign,
                         world->jobs);
-    upload_lists(d, world, &d->clusters, gfx_cluster_cells(&out->grid));
+    if (s->cell_cap > 0.0f) {
+        world->stats.capped =
+            gfx_clusters_cap(&d->clusters, cells, (uint32_t)s->cell_cap, GFX_CLUSTER_ALL);
+    }
+    world->stats.light_refs = d->clusters.total;
+    upload_lists(d, &d->clusters, cells);
+    return true;
 }

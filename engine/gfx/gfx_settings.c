@@ -79,8 +79,9 @@ typedef struct setting {
 static const setting table[] = {
     {"render", offsetof(gfx_settings, render), {"auto", "forward", "clustered", "none"}, 0, 0},
     {"slices", offsetof(gfx_settings, linear_slices), {"exponential", "linear"}, 0, 0},
-    {"assign", offsetof(gfx_settings, assign), {"naive", "per_light", "simd"}, 0, 0},
+    {"assign", offsetof(gfx_settings, assign), {"naive", "per_light", "simd", "gpu"}, 0, 0},
     {"first_slice", offsetof(gfx_settings, first_slice), {NULL}, 0.0f, 1e6f},
+    {"cell_cap", offsetof(gfx_settings, cell_cap), {NULL}, 0.0f, 65536.0f},
     {"exposure", offsetof(gfx_settings, exposure), {NULL}, 1e-6f, 1e6f},
     {"tonemap", offsetof(gfx_settings, tonemap), {"neutral", "linear"}, 0, 0},
     {"instancing", offsetof(gfx_settings, instancing), {"off", "on"}, 0, 0},

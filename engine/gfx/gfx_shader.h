@@ -18,6 +18,9 @@
     X(BLEND, "USE_BLEND")                                                                          \
     X(IBL, "USE_IBL")                                                                              \
     X(PANORAMA, "USE_PANORAMA")                                                                    \
+    X(COUNT_LISTS, "PASS_COUNT")                                                                   \
+    X(SUM_LISTS, "PASS_SUM")                                                                       \
+    X(FILL_LISTS, "PASS_FILL")                                                                     \
     X(DEPTH_ONLY, "DEPTH_ONLY")                                                                    \
     X(TEXT, "USE_TEXT")                                                                            \
     X(IMAGE, "USE_IMAGE")

@@ -92,6 +92,8 @@ void gfx_world_counts(const gfx_world *world, core_metrics *metrics) {
     core_metrics_set(metrics, CORE_COUNT_TRIANGLES, world->stats.triangles);
 }
 
+gfx_stats gfx_world_stats(const gfx_world *world) { return world->stats; }
+
 void *gfx_grow(gfx_growing *array, size_t element, size_t extra) {
     size_t need = (array->count + extra) * element;
     if (need == 0) {

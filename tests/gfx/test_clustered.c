@@ -66,7 +66,7 @@ static void test_light_counts(void) {
 
 static void test_methods_slices_and_grids(void) {
     gfx_fixture f = open_scene(80, 45, 100, 4.0f);
-    const char *const methods[] = {"naive", "per_light", "simd"};
+    const char *const methods[] = {"naive", "per_light", "simd", "gpu"};
     const char *const grids[] = {"16x9x24", "1x1x1", "7x5x3", "64x64x64"};
     for (size_t m = 0; m < CORE_COUNT_OF(methods); ++m) {
         for (size_t g = 0; g < CORE_COUNT_OF(grids); ++g) {
@@ -127,6 +127,40 @@ static void test_camera_inside_lights(void) {
     gfx_fixture_close(&f);
 }
 
+// Cells with more lights than the cap are lit by all lights: the same picture, counted.
+static void test_overflow_falls_back(void) {
+    gfx_fixture f = open_scene(64, 36, 100, 6.0f);
+    for (int i = 0; i < 200; ++i) {
+        gfx_add_point(f.world, core_v3(0, 1, 10), 1.0f, 0.1f); // all in one cell
+    }
+    set(&f, "cell_cap", "40");
+    expect_equal(&f, "cap");
+    gfx_stats some = gfx_world_stats(f.world);
+    TEST_ASSERT_GREATER_THAN(0, some.capped);
+    set(&f, "cell_cap", "1");
+    expect_equal(&f, "cap of one");
+    TEST_ASSERT_GREATER_THAN(some.capped, gfx_world_stats(f.world).capped);
+    set(&f, "cell_cap", "0");
+    expect_equal(&f, "no cap");
+    TEST_ASSERT_EQUAL_UINT32(0, gfx_world_stats(f.world).capped);
+    gfx_fixture_close(&f);
+}
+
+// A hundred thousand lights, far more than a list of 16 bits could number.
+static void test_very_many_lights(void) {
+    gfx_fixture f = gfx_fixture_open(8, 8, true);
+    gfx_add(f.world, "box", core_v3(0, -0.5f, 0), core_v3(60, 1, 60), 0.8f, 0.8f, 0.8f);
+    core_rng rng = core_rng_make(3, 1);
+    for (int i = 0; i < 100000; ++i) {
+        gfx_add_point(f.world, random_point(&rng, core_v3(50, 3, 50)), 0.5f, 1.0f);
+    }
+    gfx_look(f.world, core_v3(0, 4, 24), core_v3(0, 0, 0));
+    set(&f, "render", "clustered");
+    TEST_ASSERT_TRUE_MESSAGE(gfx_device_render(f.device, f.world), core_last_error());
+    TEST_ASSERT_GREATER_THAN(10000, gfx_world_stats(f.world).light_refs);
+    gfx_fixture_close(&f);
+}
+
 static void test_counts(void) {
     gfx_fixture f = open_scene(64, 36, 50, 5.0f);
     core_metrics *m = core_metrics_create();
@@ -155,6 +189,8 @@ int main(void) {
     RUN_TEST(test_odd_sizes);
     RUN_TEST(test_views);
     RUN_TEST(test_camera_inside_lights);
+    RUN_TEST(test_overflow_falls_back);
+    RUN_TEST(test_very_many_lights);
     RUN_TEST(test_counts);
     return UNITY_END();
 }
