@@ -46,6 +46,9 @@ static bool check_desc(const phys_body_desc *d, const phys_shape_desc *shapes, u
     if (d->layer > 31) {
         return core_fail("phys body: layer is %u, expected 0..31", d->layer);
     }
+    if (d->locks > 63) {
+        return core_fail("phys body: locks is %u, expected PHYS_LOCK_ flags", d->locks);
+    }
     if (count == 0 || shapes == NULL) {
         return core_fail("phys body: no shapes given, expected at least one");
     }
@@ -198,6 +201,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     b->gravity_scale[i] = d->gravity_scale;
     b->type[i] = (uint8_t)d->type;
     b->layer[i] = (uint8_t)d->layer;
+    b->locks[i] = (uint8_t)d->locks;
     b->user[i] = d->user;
     b->flags[i] |= d->contact_events ? PHYS_BODY_EVENTS : 0u;
     b->rest_turn[i] = q;
@@ -208,6 +212,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     }
     core_arena_rewind(&w->scratch, mark);
     w->measured = false;
+    w->edited = true;
     w->trees_stale = true;
     return h;
 }
@@ -228,6 +233,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
     w->order_count = 0;
     w->trees_stale = w->rows_stale = true;
     w->measured = false;
+    w->edited = true;
     return core_columns_remove(&w->bodies.set, body, NULL, NULL);
 }
 
@@ -255,8 +261,9 @@ void phys_body_sync_origin(phys_bodies *b, uint32_t i) {
     phys_put3(b->px, b->py, b->pz, i, core_v3_sub(c, phys_rotate(phys_body_quat(b, i), lc)));
 }
 
-// World-frame inverse inertia times v.
+// World-frame inverse inertia times v; locked axes take and give nothing.
 core_vec3 phys_body_inverse_inertia(const phys_bodies *b, uint32_t i, core_vec3 v) {
+    v = phys_lock_turn(b->locks[i], v);
     if (b->flags[i] & PHYS_BODY_ISOTROPIC) {
         return core_v3_scale(v, b->ix[i]);
     }
@@ -265,7 +272,8 @@ core_vec3 phys_body_inverse_inertia(const phys_bodies *b, uint32_t i, core_vec3 
         q = phys_quat_mul(q, b->iq[i]);
     }
     core_vec3 l = phys_unrotate(q, v);
-    return phys_rotate(q, core_v3(l.x * b->ix[i], l.y * b->iy[i], l.z * b->iz[i]));
+    l = phys_rotate(q, core_v3(l.x * b->ix[i], l.y * b->iy[i], l.z * b->iz[i]));
+    return phys_lock_turn(b->locks[i], l);
 }
 
 // Row of a live handle; reports a stale one under the caller's name.
@@ -349,6 +357,7 @@ bool phys_body_set_position(phys_world *w, phys_body body, core_vec3 p) {
     phys_body_sync_center(&w->bodies, i);
     w->bodies.seen[i] = phys_get3(w->bodies.cx, w->bodies.cy, w->bodies.cz, i);
     w->measured = false;
+    w->edited = true;
     phys_wake_row(w, i);
     return true;
 }
@@ -369,6 +378,7 @@ bool phys_body_set_rotation(phys_world *w, phys_body body, core_quat q) {
     w->bodies.qz[i] = q.z;
     w->bodies.qw[i] = q.w;
     phys_body_sync_center(&w->bodies, i);
+    w->edited = true;
     phys_wake_row(w, i);
     return true;
 }
@@ -385,6 +395,7 @@ bool phys_body_set_velocity(phys_world *w, phys_body body, core_vec3 v) {
     }
     phys_put3(w->bodies.vx, w->bodies.vy, w->bodies.vz, i, v);
     w->measured = false;
+    w->edited = true;
     phys_wake_row(w, i);
     return true;
 }
@@ -397,6 +408,7 @@ bool phys_body_set_angular_velocity(phys_world *w, phys_body body, core_vec3 v) 
     }
     phys_put3(w->bodies.wx, w->bodies.wy, w->bodies.wz, i, v);
     w->measured = false;
+    w->edited = true;
     phys_wake_row(w, i);
     return true;
 }
@@ -426,6 +438,7 @@ bool phys_body_apply_impulse(phys_world *w, phys_body body, core_vec3 j, core_ve
     phys_put3(b->vx, b->vy, b->vz, i, core_v3_mad(v, j, b->im[i]));
     phys_put3(b->wx, b->wy, b->wz, i, core_v3_add(o, dw));
     w->measured = false;
+    w->edited = true;
     phys_wake_row(w, i);
     return true;
 }

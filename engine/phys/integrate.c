@@ -35,8 +35,8 @@ void phys_integrate_velocity(phys_world *w, float h) {
         }
         v = core_v3_scale(v, 1.0f / (1.0f + b->linear_damping[i] * h));
         o = core_v3_scale(o, 1.0f / (1.0f + b->angular_damping[i] * h));
-        phys_put3(b->vx, b->vy, b->vz, i, v);
-        phys_put3(b->wx, b->wy, b->wz, i, o);
+        phys_put3(b->vx, b->vy, b->vz, i, phys_lock_motion(b->locks[i], v));
+        phys_put3(b->wx, b->wy, b->wz, i, phys_lock_turn(b->locks[i], o));
     }
 }
 
@@ -124,7 +124,8 @@ void phys_integrate_rotation(phys_bodies *b, uint32_t i, float h) {
 // the splitting above in quarters of the step; a touched one by its turn, while its angular
 // velocity follows the gyroscopic term.
 void phys_finish_rotation(phys_bodies *b, uint32_t i, core_vec3 turn, float dt, bool free) {
-    bool round = (b->flags[i] & PHYS_BODY_ISOTROPIC) != 0 || b->type[i] != PHYS_DYNAMIC;
+    bool round = (b->flags[i] & PHYS_BODY_ISOTROPIC) != 0 || b->type[i] != PHYS_DYNAMIC ||
+                 (b->locks[i] & PHYS_LOCK_TURN) != 0;
     if (free && !round) {
         for (int k = 0; k < 4; k++) {
             phys_integrate_rotation(b, i, 0.25f * dt);
@@ -144,6 +145,39 @@ void phys_finish_rotation(phys_bodies *b, uint32_t i, core_vec3 turn, float dt, 
     half_turn(0.5f * angle, &s, &c);
     core_vec3 u = core_v3_scale(turn, s / angle);
     put_quat(b, i, phys_quat_mul((core_quat){u.x, u.y, u.z, c}, q));
+}
+
+typedef struct pull {
+    const phys_world *world;
+    uint32_t row;
+} pull;
+
+static core_vec3 acceleration(void *ctx, core_vec3 p, core_vec3 v, float t) {
+    (void)t;
+    const pull *f = ctx;
+    const phys_bodies *b = &f->world->bodies;
+    core_vec3 a = core_v3_scale(f->world->gravity, b->gravity_scale[f->row]);
+    a = core_v3_mad(a, b->force[f->row], b->im[f->row]);
+    a = core_v3_add(a, phys_field_acceleration(f->world, p, b->layer[f->row]));
+    return core_v3_mad(a, v, -b->linear_damping[f->row]);
+}
+
+void phys_integrate_free(phys_world *w, uint32_t i, float dt, int substeps) {
+    phys_bodies *b = &w->bodies;
+    pull f = {w, i};
+    phys_motion m = {.p = phys_get3(b->cx, b->cy, b->cz, i),
+                     .v = phys_get3(b->vx, b->vy, b->vz, i),
+                     .q = phys_quat_mul(phys_body_quat(b, i), b->iq[i]),
+                     .w = phys_get3(b->wx, b->wy, b->wz, i),
+                     .inertia = {1.0f / b->ix[i], 1.0f / b->iy[i], 1.0f / b->iz[i]}};
+    for (int k = 0; k < substeps; k++) {
+        w->integrator->step(&m, acceleration, &f, 0.0f, dt / (float)substeps);
+    }
+    phys_put3(b->cx, b->cy, b->cz, i, m.p);
+    phys_put3(b->vx, b->vy, b->vz, i, m.v);
+    phys_put3(b->wx, b->wy, b->wz, i,
+              core_v3_scale(m.w, 1.0f / (1.0f + b->angular_damping[i] * dt)));
+    put_quat(b, i, phys_quat_mul(m.q, phys_conj(b->iq[i])));
 }
 
 void phys_clear_forces(phys_world *w) {

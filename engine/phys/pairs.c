@@ -86,6 +86,7 @@ static void map_remove(phys_pair_map *m, uint64_t key) {
 static bool is_ball(const phys_world *w, uint32_t shape) {
     const phys_shapes *s = &w->shapes;
     return s->type[shape] == PHYS_SPHERE && s->next[shape] == 0 &&
+           w->bodies.locks[s->row[shape]] == 0 &&
            (w->bodies.flags[s->row[shape]] & PHYS_BODY_ISOTROPIC) != 0 &&
            w->bodies.shape[s->row[shape]] == phys_row_slot(&s->set, shape);
 }

@@ -86,12 +86,23 @@ typedef struct phys_body_desc {
     core_vec3 angular_velocity;            // rad/s, world frame
     float linear_damping, angular_damping; // 1/s, >= 0
     float gravity_scale;                   // default 1
+    uint32_t locks;                        // PHYS_LOCK_*: directions in which it never moves
     uint32_t layer;                        // 0..31
     bool contact_events;                   // report touches of this body (phys_world_events)
     uint64_t user;                         // the caller's own, never read
     uint32_t cookie;
 } phys_body_desc;
 phys_body_desc phys_body_desc_default(void);
+
+enum { // world axes: of motion, of turning
+    PHYS_LOCK_X = 1u,
+    PHYS_LOCK_Y = 2u,
+    PHYS_LOCK_Z = 4u,
+    PHYS_LOCK_TURN_X = 8u,
+    PHYS_LOCK_TURN_Y = 16u,
+    PHYS_LOCK_TURN_Z = 32u,
+    PHYS_LOCK_TURN = 56u
+};
 
 // A body with one or more shapes. Null + core_fail for bad input (NaN, sizes <= 0, far positions).
 phys_body phys_body_create(phys_world *world, const phys_body_desc *desc,
@@ -180,6 +191,41 @@ phys_field_desc phys_field_desc_default(phys_field_type type);
 phys_field phys_field_create(phys_world *world, const phys_field_desc *desc);
 bool phys_field_destroy(phys_world *world, phys_field field);
 bool phys_field_alive(const phys_world *world, phys_field field);
+
+// ---- questions between steps: they change nothing ----
+typedef struct phys_filter {
+    uint32_t layers; // bit per body layer that is seen; 0: all
+    phys_body skip;  // not seen; null: none
+} phys_filter;
+phys_filter phys_filter_default(void);
+typedef struct phys_hit {
+    bool hit;
+    phys_body body;
+    core_vec3 point, normal; // world; the normal leaves the body
+    float fraction;          // of the way in [0, 1]; closest: distance (m)
+} phys_hit;
+// Nearest body on the way from `from` to `from + way`. A ray that starts inside hits at 0. filter
+// may be NULL. False: nothing, out->hit false (also for bad input, with core_fail).
+bool phys_world_ray(phys_world *world, core_vec3 from, core_vec3 way, const phys_filter *filter,
+                    phys_hit *out);
+// As a ray with a shape (sphere, box, capsule, cylinder) that does not turn.
+bool phys_world_cast(phys_world *world, const phys_shape_desc *shape, core_vec3 from,
+                     core_quat rotation, core_vec3 way, const phys_filter *filter, phys_hit *out);
+// Bodies that a shape overlaps, by row. Returns how many; at most `capacity` are written.
+uint32_t phys_world_overlap(phys_world *world, const phys_shape_desc *shape, core_vec3 position,
+                            core_quat rotation, const phys_filter *filter, phys_body *out,
+                            uint32_t capacity);
+// Closest surface point within `reach` metres; a point inside a body is its own closest.
+bool phys_world_closest(phys_world *world, core_vec3 point, float reach, const phys_filter *filter,
+                        phys_hit *out);
+
+// ---- snapshot ----
+// The whole state: bodies, contacts with their impulses, triggers, fields, rules. A world restored
+// to it steps on with the same bits. Hulls are not in it: only worlds that still have the shapes
+// they had can be restored (rollback). False + core_fail for data that does not fit.
+size_t phys_world_save_size(phys_world *world);
+void phys_world_save(phys_world *world, void *out);
+bool phys_world_restore(phys_world *world, const void *data, size_t size);
 
 // The poses, for sync and columns(): arrays of phys_body_count rows, valid until the next create,
 // destroy or step. COM positions equal origins for single centred shapes; these are body origins.

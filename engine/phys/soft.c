@@ -39,6 +39,7 @@ typedef struct soft {
     // What this level of substeps is about: rows of bodies and contacts, and each body row's place.
     uint32_t *body, *ball, *contact, *index;
     uint32_t ball_count, contact_count;
+    uint32_t *locked, locked_count; // places of bodies with locked axes
     soft_bodies bodies;
     soft_spring spring, spring_fixed;
     soft_group group[GROUPS];
@@ -48,6 +49,7 @@ typedef struct soft {
     soft_flat_fn *push, *move;
     bool bounces;
     uint32_t level;
+    int substeps;
     float dt, h;
 } soft;
 
@@ -77,6 +79,15 @@ static void fill_inertia(const phys_bodies *b, uint32_t i, float *out) {
     out[6] = core_v3_dot(y, m.z);
 }
 
+static void lock_inertia(uint8_t locks, float *out) {
+    float x = locks & PHYS_LOCK_TURN_X ? 0.0f : 1.0f, y = locks & PHYS_LOCK_TURN_Y ? 0.0f : 1.0f;
+    float z = locks & PHYS_LOCK_TURN_Z ? 0.0f : 1.0f;
+    float mask[8] = {x, y, z, 0, x * y, x * z, y * z, 0};
+    for (int k = 0; k < 8; k++) {
+        out[k] *= mask[k];
+    }
+}
+
 static core_vec3 pull_on(const phys_world *w, uint32_t i, const float *moved) {
     const phys_bodies *b = &w->bodies;
     core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
@@ -102,6 +113,7 @@ static void fill_body(soft *s, uint32_t k) {
         return;
     }
     fill_inertia(b, i, s->bodies.inertia + (size_t)k * 8);
+    lock_inertia(b->locks[i], s->bodies.inertia + (size_t)k * 8);
     core_vec3 a = core_v3_scale(pull_on(s->world, i, s->bodies.moved + (size_t)k * 8), s->h);
     memcpy(p, &a, sizeof a);
     core_vec3 t = b->torque[i];
@@ -405,6 +417,19 @@ static void flat(soft *s, soft_flat_fn *fn) { // two bodies at a time: 16 floats
     core_jobs_for(s->world->jobs, (s->bodies.count + 1) / 2, 1024, run_flat, &(flat_job){s, fn});
 }
 
+// Axes along which a body must not move: its share of each pass is taken back at once.
+static void hold_locks(soft *s) {
+    const phys_bodies *b = &s->world->bodies;
+    for (uint32_t n = 0; n < s->locked_count; n++) {
+        float *v = s->bodies.velocity + (size_t)s->locked[n] * 8;
+        uint8_t locks = b->locks[s->body[s->locked[n]]];
+        core_vec3 l = phys_lock_motion(locks, core_v3(v[0], v[1], v[2]));
+        core_vec3 a = phys_lock_turn(locks, core_v3(v[4], v[5], v[6]));
+        memcpy(v, &l, sizeof l);
+        memcpy(v + 4, &a, sizeof a);
+    }
+}
+
 static void refresh_fields(soft *s) {
     const phys_bodies *b = &s->world->bodies;
     for (uint32_t k = 0; k < s->bodies.count; k++) {
@@ -425,12 +450,16 @@ static void finish_body(soft *s, uint32_t k) {
     if (s->level != 0 && b->type[i] != PHYS_DYNAMIC) {
         return; // every level carries the kinematic bodies along; one moves them
     }
+    bool free = b->touching[i] == 0;
+    if (free && b->type[i] == PHYS_DYNAMIC && w->integrator != NULL && b->locks[i] == 0) {
+        phys_integrate_free(w, i, s->dt, s->substeps);
+        return;
+    }
     const float *v = s->bodies.velocity + (size_t)k * 8, *p = s->bodies.moved + (size_t)k * 8;
     core_vec3 way = core_v3(p[0], p[1], p[2]), turn = core_v3(p[4], p[5], p[6]);
     phys_put3(b->vx, b->vy, b->vz, i, core_v3(v[0], v[1], v[2]));
     phys_put3(b->wx, b->wy, b->wz, i, core_v3(v[4], v[5], v[6]));
-    bool free = b->touching[i] == 0;
-    if (free && b->type[i] == PHYS_DYNAMIC) {
+    if (free && b->type[i] == PHYS_DYNAMIC && b->locks[i] == 0) {
         core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
         a = core_v3_mad(a, b->force[i], b->im[i]);
         way = core_v3_mad(way, a, -0.5f * s->h * s->dt);
@@ -446,15 +475,19 @@ static void solve_substeps(soft *s, int substeps) {
             refresh_fields(s);
         }
         flat(s, s->push);
+        hold_locks(s);
         if (k == 0) {
             run_pass(s, SOFT_WARM);
         }
         run_pass(s, SOFT_SOLVE);
+        hold_locks(s);
         flat(s, s->move);
         run_pass(s, SOFT_RELAX);
+        hold_locks(s);
     }
     if (s->bounces) {
         run_pass(s, SOFT_RESTITUTE);
+        hold_locks(s);
     }
 }
 
@@ -481,6 +514,11 @@ static void collect(soft *s) {
         count += here;
     }
     s->bodies.count = count;
+    s->locked = CORE_ARENA_ARRAY(&w->scratch, uint32_t, count + 1);
+    for (uint32_t k = 0; k < count; k++) {
+        s->locked[s->locked_count] = k;
+        s->locked_count += b->locks[s->body[k]] != 0;
+    }
     for (uint32_t i = 0; i < n; i++) {
         s->index[i] = CORE_MIN(s->index[i], count);
     }
@@ -499,7 +537,8 @@ static void collect(soft *s) {
 static void step_level(phys_world *w, float dt, uint32_t level) {
     size_t mark = core_arena_mark(&w->scratch);
     int substeps = w->substeps ? w->substeps : w->solver->substeps << level;
-    soft s = {.world = w, .dt = dt, .h = dt / (float)substeps, .level = level};
+    soft s = {
+        .world = w, .dt = dt, .h = dt / (float)substeps, .level = level, .substeps = substeps};
     float stiffness = level == 0 ? STIFFNESS : STIFFNESS_HARD;
     s.spring = make_spring(s.h, stiffness);
     s.spring_fixed = make_spring(s.h, 2.0f * stiffness);

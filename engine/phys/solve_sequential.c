@@ -189,8 +189,10 @@ static void move(phys_world *w, solve *s, float h) {
         if (b->type[i] == PHYS_STATIC) {
             continue;
         }
-        core_vec3 step = core_v3_scale(phys_get3(b->vx, b->vy, b->vz, i), h);
-        if (b->touching[i] == 0 && b->type[i] == PHYS_DYNAMIC) {
+        core_vec3 v = phys_lock_motion(b->locks[i], phys_get3(b->vx, b->vy, b->vz, i));
+        phys_put3(b->vx, b->vy, b->vz, i, v);
+        core_vec3 step = core_v3_scale(v, h);
+        if (b->touching[i] == 0 && b->type[i] == PHYS_DYNAMIC && b->locks[i] == 0) {
             core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
             step = core_v3_mad(step, core_v3_mad(a, b->force[i], b->im[i]), -0.5f * h * h);
         }

@@ -17,7 +17,11 @@ phys_world_desc phys_world_desc_default(void) {
 const char *const *phys_method_names(const char *kind) {
     static const char *const solver[] = {"soft", "sequential", NULL};
     static const char *const broad[] = {"auto", "tree", "sap", "brute", NULL};
+    static const char *const integrator[] = {"exact", "semi", "euler", "verlet", "rk4", NULL};
     static const char *const none[] = {NULL};
+    if (strcmp(kind, "integrator") == 0) {
+        return integrator;
+    }
     return strcmp(kind, "solver") == 0 ? solver : strcmp(kind, "broad") == 0 ? broad : none;
 }
 
@@ -149,7 +153,8 @@ static bool set_int(const char *name, const char *value, int lo, int hi, int *ou
 }
 
 bool phys_world_set(phys_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"broad", "iterations", "sleep", "solver", "substeps"};
+    static const char *const names[] = {"broad", "integrator", "iterations",
+                                        "sleep", "solver",     "substeps"};
     if (strcmp(name, "broad") == 0) {
         return pick_broad(w, value);
     }
@@ -161,6 +166,12 @@ bool phys_world_set(phys_world *w, const char *name, const char *value) {
     }
     if (strcmp(name, "iterations") == 0) {
         return set_int(name, value, 0, 256, &w->iterations);
+    }
+    if (strcmp(name, "integrator") == 0) {
+        bool exact = strcmp(value, "exact") == 0;
+        const phys_integrator *found = exact ? NULL : phys_integrator_find(value);
+        w->integrator = exact || found != NULL ? found : w->integrator;
+        return exact || found != NULL;
     }
     if (strcmp(name, "sleep") == 0) {
         bool on = strcmp(value, "on") == 0;
@@ -238,6 +249,7 @@ static void finish_step(phys_world *w, float dt) {
         }
     }
     phys_clear_forces(w);
+    w->edited = false;
     w->time += (double)dt;
 }
 

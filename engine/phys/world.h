@@ -3,6 +3,7 @@
 #define PHYS_WORLD_H
 
 #include "phys/geom.h"
+#include "phys/motion.h"
 #include "phys/phys.h"
 #include "phys/vec.h"
 
@@ -79,6 +80,7 @@ enum {
     X(uint16_t, flags, CORE_COLUMN_STATE)                                                          \
     X(uint32_t, shape, CORE_COLUMN_STATE) /* first shape's slot; 0: none */                        \
     X(uint64_t, user, CORE_COLUMN_STATE)                                                           \
+    X(uint8_t, locks, CORE_COLUMN_STATE)                                                           \
     X(float, still, CORE_COLUMN_STATE) /* s within reach of rest_place, rest_turn */               \
     X(core_vec3, rest_place, CORE_COLUMN_STATE)                                                    \
     X(core_quat, rest_turn, CORE_COLUMN_STATE)                                                     \
@@ -262,13 +264,15 @@ struct phys_world {
     phys_pair_list pairs;
     phys_tree fixed_tree, moving_tree;
     bool trees_stale; // rows changed
+    bool edited;      // bodies were made, moved or removed since the last step
     bool any_moved;   // some shape left its bounds in this step
     bool rows_stale;  // contacts' body rows are to be looked up again
     bool pairs_stale; // layers or rules changed: every pair is to be asked again
     uint32_t *order;  // sweep order of shape rows, kept between steps
     uint32_t order_count, order_capacity;
-    core_arena scratch; // of one step
-    uint32_t stamp;     // number of the broad phase, marks living pairs
+    core_arena scratch;                // of one step
+    uint32_t stamp;                    // number of the broad phase, marks living pairs
+    const phys_integrator *integrator; // of bodies that touch nothing; NULL: the solver's own
     bool sleep;
     uint32_t islands;  // of the last step
     uint32_t touching; // contacts of the last step
@@ -319,6 +323,15 @@ static inline bool phys_moves(const phys_bodies *b, uint32_t i) {
     return phys_mobile(b, i) || (b->type[i] == PHYS_KINEMATIC &&
                                  (b->vx[i] != 0.0f || b->vy[i] != 0.0f || b->vz[i] != 0.0f ||
                                   b->wx[i] != 0.0f || b->wy[i] != 0.0f || b->wz[i] != 0.0f));
+}
+
+// Takes the locked world axes out of a velocity.
+static inline core_vec3 phys_lock_motion(uint8_t locks, core_vec3 v) {
+    return core_v3(locks & PHYS_LOCK_X ? 0.0f : v.x, locks & PHYS_LOCK_Y ? 0.0f : v.y,
+                   locks & PHYS_LOCK_Z ? 0.0f : v.z);
+}
+static inline core_vec3 phys_lock_turn(uint8_t locks, core_vec3 w) {
+    return phys_lock_motion((uint8_t)(locks >> 3), w);
 }
 
 // shape.c
@@ -412,6 +425,8 @@ bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, f
 void phys_integrate_velocity(phys_world *world, float h);
 void phys_integrate_rotation(phys_bodies *b, uint32_t row, float h);
 void phys_finish_rotation(phys_bodies *b, uint32_t row, core_vec3 turn, float dt, bool free);
+// Moves a free body by a method of motion.h, from its state at the start of the step.
+void phys_integrate_free(phys_world *world, uint32_t row, float dt, int substeps);
 void phys_clear_forces(phys_world *world);
 
 #endif
