@@ -9,9 +9,13 @@
 
 void app_report_init(app_report *r) {
     *r = (app_report){0};
+    app_report_new_scene(r);
+    memcpy(r->peak, r->accuracy, sizeof r->peak);
+}
+
+void app_report_new_scene(app_report *r) {
     for (int i = 0; i < APP_ACCURACY_COUNT; i++) {
-        bool built = scene_room_built(app_accuracy_names[i].room);
-        r->accuracy[i] = r->peak[i] = built ? 0.0 : NAN;
+        r->accuracy[i] = scene_room_built(app_accuracy_names[i].room) ? 0.0 : NAN;
     }
 }
 

@@ -62,6 +62,7 @@ typedef struct app_report {
 } app_report;
 
 void app_report_init(app_report *r);
+void app_report_new_scene(app_report *r); // figures of the last step start anew, peaks stay
 void app_report_release(app_report *r);
 void app_text_list_add(app_text_list *list, const char *text); // repeated texts count once
 void app_report_user(app_report *r, const char *name, double value);

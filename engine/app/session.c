@@ -151,6 +151,7 @@ bool app_scene_open(app_run *r) {
         return false;
     }
     r->conf = (script_conf){0};
+    app_report_new_scene(&r->report);
     bool first = strcmp(r->entry, r->path.entry) == 0;
     bool loaded = !(first && r->path.has_conf) || script_load_file(r->script, "conf.lua", &r->conf);
     loaded = loaded && script_load_file(r->script, r->entry, &r->conf);

@@ -267,6 +267,12 @@ void scene_describe_row(const scene *s, const core_columns *set, uint32_t row, c
 }
 
 void scene_counts(const scene *s) {
+    // A former scene may have left counts of rooms that this one never made.
+    for (int i = 0; i < CORE_COUNT_TOTAL; i++) {
+        if (i != CORE_COUNT_LUA_KB) {
+            core_metrics_set(s->metrics, (core_count)i, 0.0);
+        }
+    }
     core_metrics_set(s->metrics, CORE_COUNT_ENTITIES, core_columns_count(&s->entity.set));
     if (s->phys) {
         phys_world_counts(s->phys, s->metrics);

@@ -132,6 +132,31 @@ class Usage(SceneCase):
         m = json.loads(self.run_scene(EMPTY, "--metrics", "-").out)
         self.assertEqual((m["steps"], m["seed"]), (600, 12345))
 
+    def test_one_scene_leads_to_another(self):
+        self.write("game/main.lua", """
+            function corsac.load() corsac.scene.spawn{ body = { shape = "sphere", radius = 0.5 } } end
+            function corsac.fixed()
+              if corsac.getStep() == 10 then corsac.run("second.lua", { score = 7, name = "fox" }) end
+            end
+            function corsac.quit() corsac.log("first ends") end
+            corsac.expect("counts.bodies", "==", 1)""")
+        self.write("game/second.lua", """
+            function corsac.load()
+              local data = corsac.getRunData()
+              corsac.metrics.set("score", data.score)
+              corsac.log(data.name .. " in second at " .. corsac.getStep())
+            end
+            corsac.expect("counts.bodies", "==", 0)
+            corsac.expect("user.score", "==", 7)""")
+        file = self.dir / "run.crr"
+        done = corsac("run", self.dir / "game", "--headless", "--steps", 30, "--metrics", "-", "--record", file)
+        self.assert_exit(done, 0, "first ends", "fox in second at 0")
+        m = json.loads(done.out)
+        self.assertEqual((m["steps"], m["counts"]["bodies"], m["counts"]["entities"]), (30, 0, 0))
+        self.assert_exit(corsac("run", self.dir / "game", "--headless", "--replay", file), 0)
+        self.write("game/second.lua", "corsac.expect('counts.bodies', '==', 5)")
+        self.assert_exit(corsac("run", self.dir / "game", "--headless", "--steps", 30), 3, "counts.bodies")
+
     def test_arguments_after_two_dashes_reach_the_script(self):
         done = self.run_scene("function corsac.load(args) print(#args, args[1], args[2]) end", "--steps", 1,
                               "--", "--steps", "two")
