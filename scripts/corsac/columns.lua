@@ -4,6 +4,7 @@ local ffi, fast = engine.ffi, engine.native
 
 local view = ffi.new("corsac_columns")
 local columns = {}
+local fence = ffi.new("double[1]") -- a store after each call: see fast.lua
 local object = ffi.typeof("const corsac_object *")
 
 local bodyType = ffi.cast("const void *", engine.bodyType)
@@ -14,12 +15,15 @@ local function row(body)
         error("columns: row(body) expects a Body, got " .. engine.describe(body), 2)
     end
     local r = fast.row(fast.self, o.index, o.generation)
+    fence[0] = 0
     if r == 0xffffffff then error("columns: this body was destroyed", 2) end
     return r
 end
 
 local function touch(r)
-    if not fast.touch(fast.self, r) then
+    local good = fast.touch(fast.self, r)
+    fence[0] = 0
+    if not good then
         error(("columns: touch(%s): the row must be a moving body's, its velocities finite, "
             .. "and the callback one that may change the simulation"):format(tostring(r)), 2)
     end
@@ -68,6 +72,7 @@ end
 
 function columns.get(options)
     fast.columns(fast.self, view)
+    fence[0] = 0
     if options and options.checked then return checkedView() end
     return view
 end

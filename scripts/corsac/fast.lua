@@ -3,6 +3,8 @@
 local engine = ...
 local ffi, fast = engine.ffi, engine.native
 
+-- LuaJIT may move a load from memory behind a later call (its assembler fuses loads into operands and
+-- looks for stores only), so every call is followed by a store: what was read before it stays read.
 -- PARAMS and so on are filled in for each count of arguments and returns.
 local template = [[
 local cast, object, call, self_, fn, kind, v, slow, type = ...
@@ -11,7 +13,11 @@ return function(self, PARAMS extra)
         local o = cast(object, self)
         if o.type == kind then
             STORES
-            if call(self_, fn, kind, o.index, o.generation, v) then return RETURNS end
+            if call(self_, fn, kind, o.index, o.generation, v) then
+                LOADS
+                v[8] = 0
+                return VALUES
+            end
         end
     end
     if extra ~= nil then return slow(self, PARAMS extra) end
@@ -24,13 +30,14 @@ local function list(n, pattern, separator)
     return table.concat(parts, separator or "")
 end
 
-local v = ffi.new("double[8]")
+local v = ffi.new("double[9]")
 local object = ffi.typeof("const corsac_object *")
 for _, m in ipairs(engine.fastMethods()) do
     local text = template:gsub("%u%u%u%u%u+", {
         PARAMS = list(m.args, "a#, "), PASS = list(m.args, ", a#"),
         CHECKS = list(m.args, ' and type(a#) == "number" and a# - a# == 0'),
-        STORES = list(m.args, "v[@] = a# "), RETURNS = list(m.returns, "v[@]", ", "),
+        STORES = list(m.args, "v[@] = a# "), VALUES = list(m.returns, "r#", ", "),
+        LOADS = list(m.returns, "local r# = v[@] "),
     }):gsub("PASS", list(m.args, ", a#"))
     local make = assert(loadstring(text, "=corsac/fast.lua:" .. m.name))
     local slow = m.methods[m.name]

@@ -53,11 +53,46 @@ local function hot()
     for i = 1, 300 do eat(math.random()) eat(math.random(i)) eat(math.random(-i, i)) end
 end
 
+local bodies = {}
+local function objects() -- methods and columns between one another: every value is what it was when read
+    for i = 1, #bodies do
+        local a, b = bodies[i], bodies[i % #bodies + 1]
+        local x, y, z = a:getPosition()
+        local u, v, w = b:getPosition()
+        local p, q, r = a:getVelocity()
+        a:setVelocity(p + 0.01 * (u - x), q + 0.01 * (v - y), r + 0.01 * (w - z))
+        local s, t = a:getVelocity()
+        eat(x) eat(u) eat(p) eat(s - p) eat(t - q) eat(x + u * p)
+        local c = corsac.phys.columns()
+        local row = c.row(b)
+        local before = c.vx[row]
+        b:setVelocity(before + 1, 0, 0)
+        eat(before) eat(c.vx[row])
+        c.vy[row] = before
+        c.touch(row)
+        eat(c.vy[row] + before)
+    end
+end
+
+local function once() -- values used once, after another call: the compiler could load them too late
+    for i = 1, #bodies do
+        local b = bodies[i]
+        local x, y, z = b:getPosition()
+        local vx, vy, vz = b:getVelocity()
+        b:setVelocity(vx, vy + 0.001 * (x + y + z), vz)
+    end
+    for i = 1, #bodies do eat((select(2, bodies[i]:getVelocity()))) end
+end
+
 local folded = { 2 ^ 0.5, 10 ^ -3, 3 ^ 7, 2 ^ 0.1, 0.1 ^ 0.1 } -- by the compiler of source text
 
 function corsac.load()
     for i = 1, #folded do eat(folded[i]) end
     for round = 1, 4 do hot() end
+    for i = 1, 150 do
+        bodies[i] = corsac.phys.newBody{ shape = "sphere", position = { i * 2, i % 7, i % 3 }, velocity = { i, 0, -i } }
+    end
+    for round = 1, 5 do objects() once() end
     local t = {}
     for i = 1, 200 do t["key" .. (i * 7919) % 1009] = i t[i * 0.5] = i end
     for i = 1, 20 do t[corsac.scene.spawn{ position = { i, 0, 0 } }] = i end
