@@ -7,6 +7,7 @@
 #define NAV_NAV_H
 
 #include "core/columns.h"
+#include "core/data.h"
 #include "core/jobs.h"
 #include "core/math.h"
 #include "core/metrics.h"
@@ -177,6 +178,45 @@ typedef enum nav_grid_method {
 // without queueing diagonal turning points (P), for the rule that forbids to cut corners.
 bool nav_grid_search(nav_world *world, nav_grid grid, nav_grid_method method, nav_cell start,
                      nav_cell goal, nav_result *result, nav_cell *out, uint32_t capacity);
+
+// ---- walkable surfaces ----
+// The ground an upright agent can stand on, cut into axis-aligned rectangles of cells; several
+// storeys may lie above one another. Searches give the shortest way for the middle of the agent,
+// measured on the ground plane, straight across the surface from corner to corner.
+typedef core_handle nav_mesh;
+
+typedef struct nav_mesh_desc {
+    float cell_size;    // m, default 0.3: the surface is this exact sideways, and exact in height
+    float agent_radius; // m, default 0.3: kept clear of walls and ledges, rounded up to cells
+    float agent_height; // m, default 1.8: headroom
+    float max_climb;    // m, default 0.4: the highest step
+    float max_slope;    // rad from level, default 0.79 (45 degrees); 0..1.5
+    uint32_t cookie;
+} nav_mesh_desc;
+nav_mesh_desc nav_mesh_desc_default(void);
+// From a triangle soup (copied, counter-clockwise seen from above is up). Null + core_fail for bad
+// descriptions, vertices that are not finite, indices out of range, and more than 2^26 cells.
+// Degenerate triangles are left out. A soup without walkable ground gives an empty mesh.
+nav_mesh nav_mesh_build(nav_world *world, const core_soup_data *soup, const nav_mesh_desc *desc);
+// From free cells of a flat map: cell (x, y) covers [x, x+1] by [y, y+1] times cell_size on the
+// ground plane (x, z). blocked[width*height], 0 free.
+nav_mesh nav_mesh_from_cells(nav_world *world, uint32_t width, uint32_t height,
+                             const uint8_t *blocked, float cell_size);
+bool nav_mesh_destroy(nav_world *world, nav_mesh mesh);
+bool nav_mesh_alive(const nav_world *world, nav_mesh mesh);
+uint32_t nav_mesh_polygons(const nav_world *world, nav_mesh mesh);
+double nav_mesh_area(const nav_world *world, nav_mesh mesh); // m^2 on the ground plane
+// Point of the surface nearest to p sideways, at most max_distance away, on the storey nearest in
+// height. False when there is none.
+bool nav_mesh_nearest(const nav_world *world, nav_mesh mesh, core_vec3 p, float max_distance,
+                      core_vec3 *out);
+// Shortest way between two points of the surface (as nav_mesh_nearest within two cells finds them;
+// NAV_NO_PATH when there is none). Writes the first `capacity` of its result->count points: start,
+// corners, goal. result->cost is its length on the ground plane in m.
+// Cui, Harabor, Grastien, "Compromise-free pathfinding on a navigation mesh" (Polyanya), IJCAI
+// 2017.
+bool nav_mesh_search(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
+                     nav_result *result, core_vec3 *out, uint32_t capacity);
 
 // ---- paths ----
 // A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when

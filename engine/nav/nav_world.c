@@ -25,6 +25,7 @@ nav_world *nav_world_create(const nav_world_desc *desc) {
     uint32_t agents = desc->max_agents ? desc->max_agents : DEFAULT_AGENTS;
     if (!nav_graphs_init(&w->graph, "nav.graphs", MOST_GRAPHS) ||
         !nav_grids_init(&w->grid, "nav.grids", MOST_GRAPHS) ||
+        !nav_meshes_init(&w->mesh, "nav.meshes", MOST_GRAPHS) ||
         !nav_paths_init(&w->path, "nav.paths", CORE_MAX(agents, MOST_PATHS)) ||
         !nav_agents_init(&w->agent, "nav.agents", agents)) {
         nav_world_destroy(w);
@@ -46,6 +47,11 @@ void nav_world_destroy(nav_world *w) {
     for (uint32_t n = core_columns_count(&w->grid.set); n > 0; n--) {
         nav_grid_destroy(w, core_columns_handle(&w->grid.set, n - 1));
     }
+    for (uint32_t n = core_columns_count(&w->mesh.set); n > 0; n--) {
+        nav_mesh_destroy(w, core_columns_handle(&w->mesh.set, n - 1));
+    }
+    nav_view_scratch_release(&w->views);
+    core_columns_release(&w->mesh.set);
     nav_grid_scratch_release(w);
     core_columns_release(&w->grid.set);
     core_columns_release(&w->graph.set);
@@ -131,7 +137,8 @@ bool nav_world_set(nav_world *w, const char *name, const char *value) {
 // ---- contents ----
 
 int nav_world_state(const nav_world *w, const core_columns **out, int capacity) {
-    const core_columns *own[] = {&w->graph.set, &w->grid.set, &w->path.set, &w->agent.set};
+    const core_columns *own[] = {&w->graph.set, &w->grid.set, &w->mesh.set, &w->path.set,
+                                 &w->agent.set};
     int n = 0;
     for (size_t i = 0; i < CORE_COUNT_OF(own); i++, n++) {
         if (out && n < capacity) {
@@ -165,6 +172,14 @@ size_t nav_world_bytes(const nav_world *w) {
                                      (size_t)g->column_words * (g->width + 2));
     }
     bytes += w->crowd.capacity * 12 * sizeof(float);
+    for (uint32_t row = 0; row < core_columns_count(&w->mesh.set); row++) {
+        const nav_mesh_data *m = w->mesh.data[row];
+        bytes += sizeof *m + ((size_t)m->span.width * m->span.depth + 1) * sizeof(uint32_t) +
+                 (size_t)m->span.count * (8 * sizeof(uint32_t)) +
+                 (size_t)m->edge_count * sizeof(nav_edge) + m->turn_count * sizeof(float);
+    }
+    bytes += w->views.capacity * (sizeof(nav_view) + sizeof(uint32_t)) +
+             w->views.turns * (sizeof(double) + sizeof(uint32_t));
     if (w->grid_scratch) {
         bytes += sizeof *w->grid_scratch +
                  w->grid_scratch->capacity * (sizeof(nav_grid_record) + sizeof(uint64_t));

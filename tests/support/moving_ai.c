@@ -87,3 +87,42 @@ int moving_ai_check(nav_world *world, const char *name, uint32_t step) {
     core_free(list);
     return tested;
 }
+
+int moving_ai_check_euclid(nav_world *world, const char *name, uint32_t step) {
+    moving_ai_map map;
+    uint32_t count;
+    FILE *file = open_data(name, ".euclid.txt");
+    moving_ai_query *list = moving_ai_scenario(name, &count);
+    if (!file || !list || !moving_ai_load(name, &map)) {
+        return 0;
+    }
+    nav_mesh mesh = nav_mesh_from_cells(world, map.width, map.height, map.blocked, 1.0f);
+    char line[100];
+    int tested = 0;
+    double sum = 0.0;
+    while (fgets(line, sizeof line, file)) {
+        uint32_t i;
+        double exact;
+        if (sscanf(line, "%u %lf", &i, &exact) != 2 || i >= count || i % step || exact <= 0.0) {
+            continue;
+        }
+        core_vec3 start = {(float)list[i].start.x + 0.5f, 0, (float)list[i].start.y + 0.5f};
+        core_vec3 goal = {(float)list[i].goal.x + 0.5f, 0, (float)list[i].goal.y + 0.5f};
+        nav_result r;
+        nav_mesh_search(world, mesh, start, goal, &r, NULL, 0);
+        double ratio = r.status == NAV_FOUND ? r.cost / exact : 0.0;
+        if (!(ratio > 0.9999 && ratio <= 1.02)) {
+            char text[160];
+            snprintf(text, sizeof text, "%s query %u: %.5f, exact %.5f", name, i, r.cost, exact);
+            TEST_FAIL_MESSAGE(text);
+        }
+        sum += ratio;
+        tested++;
+    }
+    TEST_ASSERT_TRUE(sum / tested <= 1.002);
+    nav_mesh_destroy(world, mesh);
+    core_free(map.blocked);
+    core_free(list);
+    fclose(file);
+    return tested;
+}
