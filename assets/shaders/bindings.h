@@ -69,6 +69,13 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_TONEMAP_NEUTRAL 0
 #define GFX_TONEMAP_LINEAR  1
 
+#define GFX_DEBUG_OFF      0
+#define GFX_DEBUG_NORMALS  1
+#define GFX_DEBUG_DEPTH    2
+#define GFX_DEBUG_LIGHTS   3 // in each cell, 32 are red
+#define GFX_DEBUG_CLUSTERS 4
+#define GFX_DEBUG_OVERDRAW 5
+
 struct gfx_view_block {
     GFX_MAT4(view_proj);
     GFX_MAT4(view);
@@ -79,7 +86,7 @@ struct gfx_view_block {
     GFX_VEC4(cluster_scale);  // tiles per pixel x, y; slices per log2(depth), or per metre; bias
     GFX_VEC4(depth_range);    // orthographic: near, far; z = virtual far (m)
     GFX_UVEC4(cluster_grid);  // cells x, y, z; 1 when slices are linear
-    GFX_UVEC4(light_count);   // directional, point and spot, tone map
+    GFX_UVEC4(light_count);   // directional, point and spot, tone map, debug view
     GFX_VEC4(lens);           // half extents of the view at depth 1
     GFX_VEC4(sky_zenith);     // rgb radiance; w: factor of the environment
     GFX_VEC4(sky_horizon);

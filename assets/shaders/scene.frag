@@ -4,6 +4,9 @@
 #include "brdf.glsl"
 #include "lights.glsl"
 #include "ambient.glsl"
+#ifdef USE_DEBUG
+#include "debug.glsl"
+#endif
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -71,6 +74,10 @@ void main() {
     base.a = 1.0;
 #endif
     Surface s = surfaceOf(m, base);
+#ifdef USE_DEBUG
+    o_color = vec4(debugColor(s), 1.0);
+    return;
+#endif
     vec3 emission = m.emissive_metallic.rgb;
     float ambient = 1.0;
 #ifdef USE_TEXTURES

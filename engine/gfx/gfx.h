@@ -49,6 +49,8 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //   shadow_size  texels of a map's side, 16..8192, default 1024
 //   shadow_distance  m of view depth that a sun's cascades cover, default 80
 //   cascades     of a sun, 1..4, default 3
+//   debug        off | normals | depth | lights (in each cell: blue none, red 32) | clusters |
+//                overdraw
 //   prepass      on | off: depth first, so that no hidden fragment is shaded
 //   culling      on | off: skip what is outside the view
 //   instancing   on | off (off: one draw call per instance, the baseline of the draw counts)

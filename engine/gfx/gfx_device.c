@@ -131,6 +131,7 @@ void gfx_device_destroy(gfx_device *device) {
     for (int i = 0; i < GFX_FRAMES; ++i) {
         glDeleteSync(d->fence[i]);
     }
+    glDeleteQueries(GFX_FRAMES, d->timer);
     gfx_quads_release(&d->quads);
     gfx_geometry_release(&d->geometry);
     gfx_shaders_release(&d->shaders);

@@ -223,6 +223,7 @@ struct gfx_device {
     gfx_textures textures;
     gfx_material_cache materials;
     GLsync fence[GFX_FRAMES];
+    GLuint timer[GFX_FRAMES];
     uint32_t frame; // turn of the streams
     gfx_quads quads;
     gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists

@@ -15,7 +15,26 @@ static void begin_turn(gfx_device *d) {
     }
 }
 
+// GPU time of the frame that used this turn before. Timer queries of software renderers are wrong
+// by factors of 5 to 7: their figure stays 0.
+static void begin_timer(gfx_device *d) {
+    if (d->software || !d->metrics) {
+        return;
+    }
+    if (!d->timer[d->frame]) {
+        glCreateQueries(GL_TIME_ELAPSED, 1, &d->timer[d->frame]);
+    } else {
+        GLuint64 ns = 0;
+        glGetQueryObjectui64v(d->timer[d->frame], GL_QUERY_RESULT, &ns);
+        core_stage_add_ns(d->metrics, CORE_STAGE_GFX_GPU, ns);
+    }
+    glBeginQuery(GL_TIME_ELAPSED, d->timer[d->frame]);
+}
+
 static void end_turn(gfx_device *d) {
+    if (d->timer[d->frame]) {
+        glEndQuery(GL_TIME_ELAPSED);
+    }
     d->fence[d->frame] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 }
 
@@ -32,10 +51,11 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
         .camera = {v->position.x, v->position.y, v->position.z,
                    v->orthographic ? 0.0f : v->near_plane},
         .viewport = {w, h, 1.0f / w, 1.0f / h},
-        .ambient_sky = {a[0], a[1], a[2], s->exposure},
+        .ambient_sky = {a[0], a[1], a[2], s->debug ? 1.0f : s->exposure},
         .ambient_ground = {0.4f * a[0], 0.4f * a[1], 0.4f * a[2], 0.0f},
         .depth_range = {v->near_plane, v->virtual_far, v->virtual_far, 0.0f},
-        .light_count = {lights->directional, lights->local, (uint32_t)s->tonemap, 0},
+        .light_count = {lights->directional, lights->local,
+                        (uint32_t)(s->debug ? GFX_TONEMAP_LINEAR : s->tonemap), (uint32_t)s->debug},
         .cluster_grid = {g->columns, g->rows, g->slices, g->linear},
         .cluster_scale = {(float)g->columns / w, (float)g->rows / h, g->scale, g->bias},
     };
@@ -51,6 +71,7 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
 static uint32_t scene_features(const gfx_device *d, const gfx_world *world, bool clustered) {
     uint32_t features = clustered ? GFX_FEATURE_CLUSTERED : 0;
     features |= world->environment_set ? GFX_FEATURE_IBL : 0;
+    features |= world->settings.debug ? GFX_FEATURE_DEBUG : 0;
     if (d->shadows.count) {
         features |= GFX_FEATURE_SHADOWS;
         features |= world->settings.shadows == GFX_SHADOWS_SOFT ? GFX_FEATURE_SOFT_SHADOWS : 0;
@@ -87,7 +108,11 @@ static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *lis
     glClearNamedFramebufferfv(d->hdr_target, GL_COLOR, 0, clear);
     glClearNamedFramebufferfv(d->hdr_target, GL_DEPTH, 0, &depth);
     d->passes++;
-    if (world->settings.prepass) {
+    if (world->settings.debug == GFX_DEBUG_OVERDRAW) { // every fragment adds its share
+        glDisable(GL_DEPTH_TEST);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE);
+    } else if (world->settings.prepass) {
         d->passes++;
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         bool ok = gfx_draws_submit(d, world, list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
@@ -99,11 +124,14 @@ static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *lis
         }
     }
     bool ok = gfx_draws_submit(d, world, list, "scene.frag", features);
-    ok = ok && (!world->environment_set || gfx_environment_draw(d, world));
+    if (world->environment_set && !world->settings.debug) {
+        ok = ok && gfx_environment_draw(d, world);
+    }
     if (ok && list->batches > list->opaque) {
         ok = pass_blended(d, world, list, features);
     }
     glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
     return ok;
 }
 
@@ -193,6 +221,7 @@ bool gfx_device_render(gfx_device *device, gfx_world *world) {
         return false;
     }
     begin_turn(d);
+    begin_timer(d);
     bool ok = (d->dfg_texture || make_dfg(d)) && draw_world(d, world);
     end_turn(d);
     return ok && gfx_device_check(d, "gfx_device_render", errors);

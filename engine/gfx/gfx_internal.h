@@ -110,6 +110,7 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     float exposure;
     int tonemap;                      // GFX_TONEMAP_*
     int instancing, culling, prepass; // switches
+    int debug;                        // GFX_DEBUG_*
     int shadows;                      // GFX_SHADOWS_*
     float shadow_size, shadow_distance, cascades;
 } gfx_settings;

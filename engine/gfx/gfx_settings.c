@@ -72,7 +72,7 @@ static bool set_grid(gfx_settings *s, const char *value) {
 typedef struct setting {
     const char *name;
     size_t offset;
-    const char *choice[5]; // empty: a number
+    const char *choice[7]; // empty: a number
     float least, most;
 } setting;
 
@@ -89,6 +89,11 @@ static const setting table[] = {
     {"shadow_size", offsetof(gfx_settings, shadow_size), {NULL}, 16.0f, 8192.0f},
     {"shadow_distance", offsetof(gfx_settings, shadow_distance), {NULL}, 1.0f, 1e6f},
     {"cascades", offsetof(gfx_settings, cascades), {NULL}, 1.0f, 4.0f},
+    {"debug",
+     offsetof(gfx_settings, debug),
+     {"off", "normals", "depth", "lights", "clusters", "overdraw"},
+     0,
+     0},
     {"prepass", offsetof(gfx_settings, prepass), {"off", "on"}, 0, 0},
     {"culling", offsetof(gfx_settings, culling), {"off", "on"}, 0, 0},
 };

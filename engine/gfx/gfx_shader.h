@@ -21,6 +21,7 @@
     X(COUNT_LISTS, "PASS_COUNT")                                                                   \
     X(SUM_LISTS, "PASS_SUM")                                                                       \
     X(FILL_LISTS, "PASS_FILL")                                                                     \
+    X(DEBUG, "USE_DEBUG")                                                                          \
     X(DEPTH_ONLY, "DEPTH_ONLY")                                                                    \
     X(TEXT, "USE_TEXT")                                                                            \
     X(IMAGE, "USE_IMAGE")

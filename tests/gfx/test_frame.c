@@ -67,9 +67,42 @@ static void test_lambert_under_a_sun(void) {
     gfx_fixture_close(&f);
 }
 
+// Debug views show what they are named for.
+static void test_debug_views(void) {
+    gfx_fixture f = gfx_fixture_open(16, 16, true);
+    gfx_add(f.world, "plane", core_v3(0, 0, 0), core_v3(50, 1, 50), 1, 1, 1);
+    gfx_add(f.world, "plane", core_v3(0, 1, 0), core_v3(50, 1, 50), 1, 1, 1);
+    gfx_look(f.world, core_v3(0, 5.0f, 0.001f), core_v3(0, 0, 0));
+    TEST_ASSERT_TRUE(gfx_world_set(f.world, "debug", "normals"));
+    float *rgba = gfx_fixture_hdr(&f);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, pixel(rgba, 16, 8, 8)[1]); // +Y is green
+    core_free(rgba);
+    TEST_ASSERT_TRUE(gfx_world_set(f.world, "debug", "overdraw"));
+    gfx_world_set_background(f.world, 0, 0, 0);
+    rgba = gfx_fixture_hdr(&f);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 0.2f, pixel(rgba, 16, 8, 8)[0]); // two layers
+    core_free(rgba);
+    for (int i = 0; i < 8; ++i) {
+        gfx_add_point(f.world, core_v3(0, 1.5f, 0), 30.0f, 1.0f); // reach every cell in view
+    }
+    TEST_ASSERT_TRUE(gfx_world_set(f.world, "debug", "lights"));
+    rgba = gfx_fixture_hdr(&f);
+    const float *p = pixel(rgba, 16, 8, 8); // heat of 8/32
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 1.0f, p[1]);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 1.0f, p[2]);
+    core_free(rgba);
+    const char *const others[] = {"depth", "clusters", "off"};
+    for (size_t i = 0; i < CORE_COUNT_OF(others); ++i) {
+        TEST_ASSERT_TRUE(gfx_world_set(f.world, "debug", others[i]));
+        TEST_ASSERT_TRUE_MESSAGE(gfx_device_render(f.device, f.world), core_last_error());
+    }
+    gfx_fixture_close(&f);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_spheres_in_a_box);
     RUN_TEST(test_lambert_under_a_sun);
+    RUN_TEST(test_debug_views);
     return UNITY_END();
 }
