@@ -266,6 +266,21 @@ static void window_loop(app_run *r) {
     }
 }
 
+// A run that ends before the step it was given (exit, Escape, an error) has its last picture too.
+static void last_picture(app_run *r) {
+    if (!r->scene || !r->report.steps || r->report.steps >= r->last_step || app_interrupted()) {
+        return;
+    }
+    r->last_step = r->report.steps;
+    bool wanted = false;
+    for (uint32_t i = 0; i < r->opt->shot_count; i++) {
+        wanted |= r->opt->shot[i].step == 0;
+    }
+    if (wanted && app_device_open(r, !r->opt->headless) && app_frame(r, 1.0f)) {
+        app_frame_files(r, r->last_step);
+    }
+}
+
 void app_loop(app_run *r) {
     uint64_t begin = core_clock_ns();
     if (r->opt->headless) {
@@ -274,5 +289,6 @@ void app_loop(app_run *r) {
         window_loop(r);
     }
     app_progress_end(r);
+    last_picture(r);
     r->report.wall_s = (double)(core_clock_ns() - begin) * 1e-9;
 }

@@ -63,6 +63,17 @@ class Picture(SceneCase):
         self.assertEqual(png.compare(last, frames[11], 0), 0)
         self.assertGreater(png.compare(first, last), 0)
 
+    def test_a_run_that_ends_early_has_its_last_picture(self):
+        ended, plain = self.dir / "ended.png", self.dir / "plain.png"
+        leaves = ROOM + "function corsac.fixed() if corsac.getStep() == 29 then corsac.exit(0) end end"
+        fails = ROOM + "function corsac.fixed() if corsac.getStep() == 29 then boom() end end"
+        args = ("--size", "64x36", "--quiet", "--shot")
+        self.assert_exit(self.run_scene(ROOM, *args, plain, "--steps", 30), 0)
+        for text, code in ((leaves, 0), (fails, 1)):
+            self.assert_exit(self.run_scene(text, *args, ended, "--steps", 100), code)
+            self.assertEqual(png.compare(plain, ended, 0), 0)
+            ended.unlink()
+
     def test_a_window_shows_the_same_picture(self):
         a, b = self.dir / "a.png", self.dir / "b.png"
         args = ("--size", "128x72", "--steps", 40, "--quiet", "--shot")
