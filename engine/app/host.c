@@ -51,7 +51,7 @@ static double metric(void *ctx, const char *path, bool *known) {
         r->sampled_at = r->report.steps;
     }
     if (strncmp(path, "counts.", 7) == 0 || strncmp(path, "memory.", 7) == 0) {
-        app_report_finish(&r->report, r->scene, script_bytes(r->script));
+        app_report_finish(&r->report, r->scene, r->script);
     }
     return app_report_value(&r->report, path, known);
 }

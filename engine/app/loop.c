@@ -76,7 +76,7 @@ static void headless_frame(app_run *r, uint64_t step) {
 static void close_step(app_run *r, const gfx_event *event, uint32_t events, uint64_t allocations) {
     app_report_step(&r->report, allocations);
     if (r->report.csv) {
-        app_report_finish(&r->report, r->scene, script_bytes(r->script));
+        app_report_finish(&r->report, r->scene, r->script);
         app_report_csv_line(&r->report);
     }
     if (r->recorder) {

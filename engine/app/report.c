@@ -126,9 +126,10 @@ uint64_t app_report_steady_allocations(const app_report *r) {
     return sum;
 }
 
-void app_report_finish(app_report *r, const scene *s, size_t script_bytes) {
-    r->script_bytes = script_bytes;
-    core_metrics_set(r->metrics, CORE_COUNT_LUA_KB, (double)script_bytes / 1024.0);
+void app_report_finish(app_report *r, const scene *s, const script *code) {
+    r->script_bytes = script_bytes(code);
+    r->mod_count = CORE_MIN(script_mods_info(code, r->mod, APP_MAX_MODS), APP_MAX_MODS);
+    core_metrics_set(r->metrics, CORE_COUNT_LUA_KB, (double)r->script_bytes / 1024.0);
     scene_counts(s);
     r->memory = scene_memory_use(s);
 }

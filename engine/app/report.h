@@ -5,7 +5,9 @@
 
 #include <stdio.h>
 
+#include "app/options.h"
 #include "scene/scene.h"
+#include "script/script.h"
 
 #define APP_VERSION "0.1.0"
 
@@ -55,6 +57,8 @@ typedef struct app_report {
     double dropped_s;               // time that they gave up
     app_user_metric *user;          // [APP_MAX_USER], made with the first one
     uint32_t user_count;
+    script_mod_info mod[APP_MAX_MODS]; // of the last scene
+    int mod_count;
     app_text_list warnings, asserts;
     char device[128];                 // GL renderer, "" when none was made
     uint32_t passes, shader_variants; // of the last frame
@@ -71,7 +75,7 @@ void app_report_sample(app_report *r, scene *s);
 // Closes a step in which the engine made so many heap allocations.
 void app_report_step(app_report *r, uint64_t allocations);
 // Counts, memory; before the writers below.
-void app_report_finish(app_report *r, const scene *s, size_t script_bytes);
+void app_report_finish(app_report *r, const scene *s, const script *code);
 
 uint64_t app_report_steady_allocations(const app_report *r);
 // Value by dotted path as in the JSON ("accuracy.nan", "stages.phys.p95"); NaN for null.

@@ -86,6 +86,24 @@ static void put_list(core_json *j, const char *key, const app_text_list *list) {
     core_json_end_array(j);
 }
 
+static void write_mods(core_json *j, const app_report *r) {
+    core_json_array(j, "mods");
+    for (int i = 0; i < r->mod_count; i++) {
+        const script_mod_info *m = &r->mod[i];
+        core_json_object(j, NULL);
+        core_json_string(j, "name", m->name);
+        core_json_string(j, "version", m->version);
+        core_json_bool(j, "enabled", m->enabled);
+        core_json_int(j, "calls", (int64_t)m->calls);
+        core_json_int(j, "instructions", (int64_t)m->instructions);
+        core_json_number(j, "ms", m->ms);
+        core_json_int(j, "bytes", (int64_t)m->bytes);
+        core_json_int(j, "errors", m->errors);
+        core_json_end_object(j);
+    }
+    core_json_end_array(j);
+}
+
 static void put_rest(core_json *j, const app_report *r) {
     core_json_int(j, "steady_allocations", (int64_t)app_report_steady_allocations(r));
     core_json_object(j, "loop");
@@ -100,6 +118,7 @@ static void put_rest(core_json *j, const app_report *r) {
     }
     put_list(j, "warnings", &r->warnings);
     put_list(j, "asserts", &r->asserts);
+    write_mods(j, r);
     core_json_object(j, "user");
     for (uint32_t i = 0; i < r->user_count; i++) {
         core_json_number(j, r->user[i].name, r->user[i].value);

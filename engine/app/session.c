@@ -201,7 +201,7 @@ void app_scene_close(app_run *r) {
             app_report_sample(&r->report, r->scene);
             r->sampled_at = r->report.steps;
         }
-        app_report_finish(&r->report, r->scene, script_bytes(r->script));
+        app_report_finish(&r->report, r->scene, r->script);
         judge(r);
         script_destroy(r->script);
     }

@@ -1,6 +1,7 @@
 // Mods: loading, calls under the guard, and what happens to what they did (mod.h).
 #include "script/mod.h"
 
+#include "core/clock.h"
 #include "core/log.h"
 #include "script/internal.h"
 
@@ -114,6 +115,7 @@ static bool begin_call(script_mod *m, int64_t budget) {
     m->journal_count = m->made_count = 0;
     m->text_used = 0;
     m->view->phase = m->game->phase;
+    m->began = core_clock_ns();
     script_guard_begin(&m->guard, budget);
     return true;
 }
@@ -123,6 +125,7 @@ static bool finish_call(script_mod *m, bool good) {
     lua_State *L = m->view->L;
     m->instructions += (uint64_t)script_guard_end(&m->guard);
     m->calls++;
+    m->ns += core_clock_ns() - m->began;
     if (!good) {
         script_mod_report(m->view, L);
     }
@@ -620,4 +623,19 @@ void script_mods_destroy(script *game) {
     while (game->mod_count > 0) {
         destroy_mod(game->mods[--game->mod_count]);
     }
+}
+
+int script_mods_info(const script *game, script_mod_info *out, int capacity) {
+    for (int i = 0; i < game->mod_count && i < capacity; i++) {
+        const script_mod *m = game->mods[i];
+        out[i] = (script_mod_info){.enabled = m->enabled,
+                                   .calls = m->calls,
+                                   .instructions = m->instructions,
+                                   .errors = (uint32_t)m->errors,
+                                   .bytes = m->guard.bytes,
+                                   .ms = (double)m->ns * 1e-6};
+        memcpy(out[i].name, m->name, sizeof m->name);
+        memcpy(out[i].version, m->version, sizeof m->version);
+    }
+    return game->mod_count;
 }

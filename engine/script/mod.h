@@ -39,7 +39,8 @@ typedef struct script_mod {
     core_rng rng;
     bool started, enabled;
     int strikes, errors, log_lines;
-    uint64_t instructions, calls; // all calls so far
+    uint64_t instructions, calls, ns; // all calls so far
+    uint64_t began;                   // clock at the running call's start: for the figures alone
     mod_change *journal;
     int journal_count;
     char *text; // [MOD_TEXT_BYTES] strings of the journal

@@ -65,6 +65,18 @@ typedef struct script_conf {
 // and runs their code. False + core_fail: it is left out and the game goes on.
 bool script_add_mod(script *s, const char *real_dir);
 
+// What the mods used so far, in their order.
+typedef struct script_mod_info {
+    char name[48], version[24];
+    bool enabled;
+    uint64_t calls, instructions; // work in C is counted in instructions too
+    uint32_t errors;
+    size_t bytes; // Lua heap
+    double ms;    // time of its calls
+} script_mod_info;
+// Fills out[capacity]; returns how many mods there are.
+int script_mods_info(const script *s, script_mod_info *out, int capacity);
+
 // Runs the file at top level (defining callbacks), then corsac.conf(t). False: error already shown.
 bool script_load_file(script *s, const char *virtual_path, script_conf *conf);
 bool script_load(script *s);              // corsac.load(args)
