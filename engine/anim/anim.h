@@ -16,6 +16,7 @@
 #define ANIM_MAX_STATES     256u
 #define ANIM_MAX_PARAMETERS 16u // per machine
 #define ANIM_MAX_EVENTS     32u // names that transitions of one machine listen to
+#define ANIM_MAX_GOALS      6u
 #define ANIM_MAX_LAYERS     3u  // above the base
 #define ANIM_PALETTE_FLOATS 12u // 3x4 row-major: row r is {m[r][0], m[r][1], m[r][2], m[r][3]}
 
@@ -50,7 +51,7 @@ size_t anim_world_bytes(const anim_world *world);
 void anim_world_counts(const anim_world *world, core_metrics *metrics); // skeletons, bones
 // Largest distance (m) between the palettes last computed and a double-precision evaluation of the
 // same state that shares no code with them: joint origins and points 0.1 m from them along each
-// axis. Instances with layers are left out. At most `sample`
+// axis. Instances with layers or goals are left out. At most `sample`
 // instances are looked at (0 = all). 0 when nothing is posed.
 double anim_world_error_max(anim_world *world, uint32_t sample);
 
@@ -304,6 +305,25 @@ uint32_t anim_instance_transitions(const anim_world *world, anim_instance instan
 bool anim_instance_set_visible(anim_world *world, anim_instance instance, bool visible);
 // Displacement of the root in the last update, in the instance's own frame.
 bool anim_instance_root_motion(const anim_world *world, anim_instance instance, core_vec3 *out);
+
+// Goals bend the finished pose, in order of their number. ANIM_GOAL_REACH: the bone and the two
+// above it are a limb whose tip goes to the target, as near as its length allows. ANIM_GOAL_LOOK:
+// the bone's axis turns to the target.
+typedef enum anim_goal_kind { ANIM_GOAL_REACH, ANIM_GOAL_LOOK } anim_goal_kind;
+typedef struct anim_goal_desc {
+    anim_goal_kind kind;
+    uint32_t bone;
+    core_vec3 target;   // m, in the model's frame
+    core_vec3 pole;     // reach: direction the middle joint points to; zero: as in the pose
+    core_vec3 axis;     // look: the bone's own forward, default +Z
+    float limit;        // look: most it turns, rad; 0: any
+    float weight;       // [0, 1]; 0 removes the goal
+    bool keep_rotation; // reach: the tip keeps its rotation in the model's frame
+    uint32_t cookie;
+} anim_goal_desc;
+anim_goal_desc anim_goal_desc_default(anim_goal_kind kind);
+bool anim_instance_set_goal(anim_world *world, anim_instance instance, uint32_t goal,
+                            const anim_goal_desc *desc);
 
 // Local pose of this moment, evaluated now.
 bool anim_instance_pose(anim_world *world, anim_instance instance, anim_pose out);

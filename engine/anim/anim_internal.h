@@ -121,12 +121,24 @@ typedef struct anim_mask_res {
     float *weight; // [stride]
 } anim_mask_res;
 
+typedef struct anim_goal {
+    uint32_t kind, bone;
+    core_vec3 target, pole, axis;
+    float limit, weight;
+    uint32_t keep_rotation;
+} anim_goal;
+typedef struct anim_goals {
+    anim_goal goal[ANIM_MAX_GOALS];
+} anim_goals;
+
 enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
 #define ANIM_INSTANCE_COLUMNS(X)                                                                   \
     X(core_handle, skeleton, CORE_COLUMN_STATE)                                                    \
     X(core_handle, player, CORE_COLUMN_STATE)                                                      \
     X(anim_layers, layer, CORE_COLUMN_STATE) /* null: none */                                      \
     X(uint32_t, layered, CORE_COLUMN_STATE)  /* how many layers there are */                       \
+    X(anim_goals, goals, CORE_COLUMN_STATE)                                                        \
+    X(uint32_t, goal_count, CORE_COLUMN_STATE) /* with a weight */                                 \
     X(float, speed, CORE_COLUMN_STATE)                                                             \
     X(float, root_x, CORE_COLUMN_STATE)                                                            \
     X(float, root_y, CORE_COLUMN_STATE)                                                            \
@@ -203,6 +215,8 @@ void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out);
 // The pose of one player: of an additive layer, its difference from the clip's first pose.
 void anim_evaluate_player(anim_world *w, const anim_skeleton_res *s, uint32_t player,
                           core_arena *arena, float *out);
+
+void anim_goals_apply(const anim_skeleton_res *s, const anim_goals *goals, float *pose);
 
 core_handle anim_snapshot_take(anim_world *w, const anim_skeleton_res *s, const float *pose);
 void anim_snapshot_read(const anim_world *w, core_handle h, const anim_skeleton_res *s, float *out);

@@ -8,8 +8,8 @@
 typedef struct group { // instances that one kernel call can sample
     const anim_skeleton_res *skeleton;
     const anim_clip_res *now, *from; // NULL: plain
-    bool fading, whole;              // whole: layers or blend trees, evaluated instance by instance
-    uint32_t count, first;           // place in the order
+    bool fading, whole;    // whole: layers, goals or blend trees, evaluated instance by instance
+    uint32_t count, first; // place in the order
 } group;
 
 #define GROUPS_MAX 1024u
@@ -47,8 +47,8 @@ static group describe(const anim_world *w, uint32_t row) {
     uint32_t p = core_columns_row(&w->players.set, w->instances.player[row]);
     uint32_t s = core_columns_row(&w->skeletons.set, w->instances.skeleton[row]);
     group g = {.skeleton = w->skeletons.item[s]};
-    g.whole = w->instances.layered[row] || is_tree(w, p, &w->players.now[p]) ||
-              is_tree(w, p, &w->players.from[p]);
+    g.whole = w->instances.layered[row] || w->instances.goal_count[row] ||
+              is_tree(w, p, &w->players.now[p]) || is_tree(w, p, &w->players.from[p]);
     if (g.whole) {
         return g;
     }

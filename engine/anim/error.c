@@ -295,7 +295,7 @@ double anim_world_error_max(anim_world *w, uint32_t sample) {
     core_arena *arena = anim_scratch(w, 0);
     double worst = 0;
     for (uint32_t row = 0; row < count && (!sample || looked < sample); row += stride) {
-        if (!w->instances.posed[row] || w->instances.layered[row] ||
+        if (!w->instances.posed[row] || w->instances.layered[row] || w->instances.goal_count[row] ||
             (w->instances.flags[row] & ANIM_HIDDEN)) {
             continue;
         }

@@ -121,6 +121,9 @@ void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out) {
             lay_over(w, s, p, arena, out);
         }
     }
+    if (w->instances.goal_count[row]) {
+        anim_goals_apply(s, &w->instances.goals[row], out);
+    }
 }
 
 float *anim_palette_of(const anim_world *w, uint32_t row) {

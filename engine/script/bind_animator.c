@@ -61,6 +61,38 @@ static int set_layer(script *s, lua_State *L, void *args) {
     return done(L, anim_instance_set_layer(world_of(s), a->self, (uint32_t)o->layer, &d));
 }
 
+#define GOALS "reach|look"
+typedef struct goal_options {
+    int64_t goal;
+    int kind;
+    const char *bone;
+    core_vec3 target, pole, axis;
+    float limit, weight;
+    bool keep_rotation;
+} goal_options;
+typedef struct goal_args {
+    core_handle self;
+    goal_options options;
+} goal_args;
+static int set_goal(script *s, lua_State *L, void *args) {
+    const goal_args *a = args;
+    const goal_options *o = &a->options;
+    anim_world *w = world_of(s);
+    int32_t bone = anim_skeleton_find(w, anim_instance_skeleton(w, a->self), o->bone);
+    if (bone < 0) {
+        bind_error(L, "Animator:setGoal: its skeleton has no bone \"%s\"", o->bone);
+    }
+    anim_goal_desc d = anim_goal_desc_default((anim_goal_kind)o->kind);
+    d.bone = (uint32_t)bone;
+    d.target = o->target;
+    d.pole = o->pole;
+    d.axis = o->axis;
+    d.limit = o->limit;
+    d.weight = o->weight;
+    d.keep_rotation = o->keep_rotation;
+    return done(L, anim_instance_set_goal(w, a->self, (uint32_t)o->goal - 1, &d));
+}
+
 typedef struct weight_args {
     core_handle self;
     int64_t layer;
@@ -213,7 +245,32 @@ static const bind_arg layer_fields[] = {
      "adds the clip's change since its first pose", .optional = true},
     {0}};
 
+static const bind_arg goal_fields[] = {
+    {"goal", BIND_INT, BIND_AT(goal_options, goal), "its number; goals are applied in order", NULL,
+     BIND_BETWEEN, .min = 1, .max = ANIM_MAX_GOALS, .optional = true, .def = 1},
+    {"kind", BIND_ENUM, BIND_AT(goal_options, kind),
+     "reach: the bone and two above it are a limb; look: the bone turns", .optional = true,
+     .values = GOALS},
+    {"bone", BIND_STRING, BIND_AT(goal_options, bone), "tip of the limb, or what looks"},
+    {"target", BIND_VEC3, BIND_AT(goal_options, target), "in the model's frame", "m",
+     .optional = true},
+    {"pole", BIND_VEC3, BIND_AT(goal_options, pole), "reach: where the middle joint points",
+     .optional = true, .def_text = "as in the pose"},
+    {"axis", BIND_VEC3, BIND_AT(goal_options, axis), "look: the bone's own forward",
+     .optional = true, .def_vec = {0, 0, 1}},
+    {"limit", BIND_FLOAT, BIND_AT(goal_options, limit), "look: most it turns (0: any)", "rad",
+     BIND_NOT_NEGATIVE, .optional = true},
+    {"weight", BIND_FLOAT, BIND_AT(goal_options, weight), "0 removes the goal", NULL, BIND_BETWEEN,
+     .max = 1, .optional = true, .def = 1},
+    {"keepRotation", BIND_BOOL, BIND_AT(goal_options, keep_rotation),
+     "reach: the tip stays turned as it was", .optional = true},
+    {0}};
+
 const bind_fn bind_animator_methods[] = {
+    {"setGoal", "Bends the finished pose: a limb reaches a point, or a bone looks at one.",
+     BIND_ARGS(
+         {"options", BIND_OPTIONS, BIND_AT(goal_args, options), "the goal", .fields = goal_fields}),
+     NULL, sizeof(goal_args), BIND_SIM, .mod = true, .cost = 20, .run = set_goal},
     {"setLayer", "Plays a clip or machine over the base, on all or some bones.",
      BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(layer_args, options), "the layer",
                 .fields = layer_fields}),
