@@ -302,6 +302,21 @@ function Machine:destroy() end
 ---@class corsac.Animator
 local Animator = {}
 
+---@class Animator.setGoal.options
+---@field goal? integer its number; goals are applied in order
+---@field kind? "reach"|"look" reach: the bone and two above it are a limb; look: the bone turns
+---@field bone string tip of the limb, or what looks
+---@field target? number[] in the model's frame, m
+---@field pole? number[] reach: where the middle joint points
+---@field axis? number[] look: the bone's own forward
+---@field limit? number look: most it turns (0: any), rad
+---@field weight? number 0 removes the goal
+---@field keepRotation? boolean reach: the tip stays turned as it was
+
+---Bends the finished pose: a limb reaches a point, or a bone looks at one.
+---@param options Animator.setGoal.options the goal
+function Animator:setGoal(options) end
+
 ---@class Animator.setLayer.options
 ---@field layer? integer 1 is the lowest above the base
 ---@field machine? corsac.Machine
