@@ -1,0 +1,70 @@
+"""The scenes of rendering: golden images, and the same bytes whatever the runs and threads.
+
+As test_picture: 0.1 % of the pixels may differ by more than 5 of 255; GOLDEN=write keeps new ones.
+"""
+
+import os
+import shutil
+import unittest
+from pathlib import Path
+
+import png
+from support import ROOT, SceneCase, corsac
+
+GOLDEN = Path(__file__).resolve().parents[1] / "golden"
+SCENES = ROOT / "scripts/scenes/gfx"
+SMALL = ("--headless", "--quiet", "--size", "192x108")
+
+
+class GfxScenes(SceneCase):
+    def shot(self, scene, name, *args, env=None):
+        out = self.dir / f"{name}.png"
+        done = corsac("run", SCENES / f"{scene}.lua", *SMALL, "--shot", out, *args, env=env)
+        self.assert_exit(done, 0)
+        return out
+
+    def golden(self, scene, *args):
+        out, kept = self.shot(scene, scene, *args), GOLDEN / f"gfx-{scene}.png"
+        if os.environ.get("GOLDEN") == "write":
+            shutil.copy(out, kept)
+        share = png.compare(kept, out)
+        if share > 0.001:
+            sheet = ROOT / f"out/golden-gfx-{scene}.png"
+            sheet.parent.mkdir(exist_ok=True)
+            png.difference(kept, out, sheet)
+            self.fail(f"{100 * share:.2f} % of the pixels differ; expected, actual, difference: {sheet.name} in out/")
+
+    def test_materials(self):
+        self.golden("materials")
+
+    def test_lights(self):
+        self.golden("lights", "--steps", 3, "--set", "n=300")
+
+    def test_shadows(self):
+        self.golden("shadows")
+
+    def test_cornell(self):
+        self.golden("cornell")
+
+    def test_forward_and_clustered_give_one_picture(self):
+        args = ("--steps", 2, "--set", "n=200", "--set")
+        forward = self.shot("lights", "forward", *args, "method=forward")
+        clustered = self.shot("lights", "clustered", *args, "method=clustered")
+        self.assertEqual(forward.read_bytes(), clustered.read_bytes())
+
+    def test_the_furnace_shows_nothing(self):
+        """White spheres under a white sky: every pixel within one step of grey."""
+        _, _, _, rows = png.read(self.shot("furnace", "furnace"))
+        values = {v for row in rows for v in row} - {255}
+        self.assertLessEqual(max(values) - min(values), 1)
+
+    def test_same_bytes_over_runs_and_threads(self):
+        pictures = set()
+        for threads in ("0", "1", "2"):
+            env = {"LP_NUM_THREADS": threads}
+            pictures.add(self.shot("shadows", f"threads-{threads}", "--threads", max(1, int(threads)), env=env).read_bytes())
+        self.assertEqual(len(pictures), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
