@@ -109,6 +109,7 @@ static void refresh_fixed_ball(phys_world *w, uint32_t i, float dt) {
     if (m.count == 0) {
         c->separation[i] = PHYS_APART;
         c->jn[i] = c->jx[i] = c->jy[i] = c->jz[i] = 0.0f;
+        c->rx[i] = c->ry[i] = c->rz[i] = 0.0f;
         return;
     }
     phys_put3(c->nx, c->ny, c->nz, i, m.normal);

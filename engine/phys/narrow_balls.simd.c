@@ -51,5 +51,8 @@ void CORE_SIMD_NAME(phys_narrow_balls)(phys_world *w, uint32_t begin, uint32_t e
         vf_store(c->jx + i, vf_keep(near, vf_load(c->jx + i)));
         vf_store(c->jy + i, vf_keep(near, vf_load(c->jy + i)));
         vf_store(c->jz + i, vf_keep(near, vf_load(c->jz + i)));
+        vf_store(c->rx + i, vf_keep(near, vf_load(c->rx + i)));
+        vf_store(c->ry + i, vf_keep(near, vf_load(c->ry + i)));
+        vf_store(c->rz + i, vf_keep(near, vf_load(c->rz + i)));
     }
 }

@@ -16,7 +16,7 @@
 #define DAMPING        10.0f
 // Rolling resistance, as a part of the radius, of balls that touch more than one thing: without it
 // a heap never comes to rest. A lone ball on a floor has none but its material's.
-#define PILE_ROLLING 0.002f
+#define PILE_ROLLING 0.02f
 #define PUSH_MAX     3.0f // m/s
 
 enum { GROUP_BALLS, GROUP_MANIFOLDS, GROUP_FIXED_BALLS, GROUP_FIXED_MANIFOLDS, GROUPS };
@@ -270,6 +270,9 @@ static void fill_ball(soft *s, uint32_t j) {
     c->jx[k] = sign * p->jx[i];
     c->jy[k] = sign * p->jy[i];
     c->jz[k] = sign * p->jz[i];
+    c->rx[k] = sign * p->rx[i];
+    c->ry[k] = sign * p->ry[i];
+    c->rz[k] = sign * p->rz[i];
     c->ima[k] = b->im[a];
     c->imb[k] = fixed ? 0.0f : b->im[o];
     c->ra[k] = ra;
@@ -332,6 +335,9 @@ static void store_ball(soft *s, uint32_t j) {
     p->jx[i] = sign * c->jx[k];
     p->jy[i] = sign * c->jy[k];
     p->jz[i] = sign * c->jz[k];
+    p->rx[i] = sign * c->rx[k];
+    p->ry[i] = sign * c->ry[k];
+    p->rz[i] = sign * c->rz[k];
 }
 
 static void store_manifold(soft *s, uint32_t l) {

@@ -35,6 +35,7 @@ typedef struct ball_block {
     LANES gap[SOFT_LANES];                                // at the start of the step, m
     LANES jn[SOFT_LANES];                                 // normal impulse of the substep
     LANES jx[SOFT_LANES], jy[SOFT_LANES], jz[SOFT_LANES]; // friction impulse, world axes
+    LANES rx[SOFT_LANES], ry[SOFT_LANES], rz[SOFT_LANES]; // rolling impulse on b, N m s
     LANES ima[SOFT_LANES], imb[SOFT_LANES];               // inverse masses
     LANES ra[SOFT_LANES], rb[SOFT_LANES];                 // radii
     LANES ia[SOFT_LANES], ib[SOFT_LANES];                 // inverse moments of inertia

@@ -20,14 +20,17 @@ static void warm(ball_block *c, int k, soft_bodies *s, bool fixed) {
     vf_store(c->jy + k, j.y);
     vf_store(c->jz + k, j.z);
     rows3 p = rows_mad(j, n, jn), turned = rows_cross(n, j);
+    rows3 roll = rows_load(c->rx + k, c->ry + k, c->rz + k);
     rows3 va = rows_gather(s->velocity, c->a + k, 0), wa = rows_gather(s->velocity, c->a + k, 4);
     rows_scatter(s->velocity, c->a + k, 0, rows_msub(va, p, ima));
-    rows_scatter(s->velocity, c->a + k, 4, rows_msub(wa, turned, ka));
+    wa = rows_msub(rows_msub(wa, turned, ka), roll, vf_load(c->ia + k));
+    rows_scatter(s->velocity, c->a + k, 4, wa);
     if (!fixed) {
         rows3 vb = rows_gather(s->velocity, c->b + k, 0);
         rows3 wb = rows_gather(s->velocity, c->b + k, 4);
         rows_scatter(s->velocity, c->b + k, 0, rows_mad(vb, p, imb));
-        rows_scatter(s->velocity, c->b + k, 4, rows_msub(wb, turned, kb));
+        wb = rows_mad(rows_msub(wb, turned, kb), roll, vf_load(c->ib + k));
+        rows_scatter(s->velocity, c->b + k, 4, wb);
     }
 }
 
@@ -66,17 +69,19 @@ static void solve(ball_block *c, int k, soft_bodies *s, const soft_spring *sprin
     }
 }
 
-// Slows the turn of one against the other by at most the resistance's torque. Nothing is carried
-// over, so that it can only take energy away.
-static void resist_rolling(const ball_block *c, int k, vf push, rows3 *wa, rows3 *wb, vf ia,
-                           vf ib) {
-    rows3 turn = rows_sub(*wa, *wb);
-    vf speed = vf_sqrt(rows_dot(turn, turn)), give = rows_inverse(vf_add(ia, ib));
-    vf most = vf_mul(vf_load(c->roll + k), push);
-    vm slow = vf_le(vf_mul(speed, give), most);
-    vf share = vf_select(slow, give, vf_mul(most, rows_inverse(speed)));
-    *wa = rows_msub(*wa, turn, vf_mul(share, ia));
-    *wb = rows_mad(*wb, turn, vf_mul(share, ib));
+// Holds the turn of one against the other by at most the resistance's torque, as friction holds
+// their slip.
+static void resist_rolling(ball_block *c, int k, vf push, rows3 *wa, rows3 *wb, vf ia, vf ib) {
+    rows3 was = rows_load(c->rx + k, c->ry + k, c->rz + k);
+    rows3 r = rows_mad(was, rows_sub(*wa, *wb), rows_inverse(vf_add(ia, ib)));
+    vf length = vf_sqrt(rows_dot(r, r)), limit = vf_mul(vf_load(c->roll + k), push);
+    vm over = vf_gt(length, limit);
+    vf one = vf_set1(1.0f);
+    r = rows_mul(r, vf_select(over, vf_div(limit, vf_select(over, length, one)), one));
+    rows_store(c->rx + k, c->ry + k, c->rz + k, r);
+    rows3 d = rows_sub(r, was);
+    *wa = rows_msub(*wa, d, ia);
+    *wb = rows_mad(*wb, d, ib);
 }
 
 static void relax(ball_block *c, int k, soft_bodies *s, const soft_spring *spring, bool fixed) {

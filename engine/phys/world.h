@@ -146,6 +146,9 @@ typedef struct phys_manifold {
     X(float, jy, CORE_COLUMN_STATE)                                                                \
     X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
     X(float, jz, CORE_COLUMN_STATE)                                                                \
+    X(float, rx, CORE_COLUMN_STATE)                                                                \
+    X(float, ry, CORE_COLUMN_STATE)                                                                \
+    X(float, rz, CORE_COLUMN_STATE)                                                                \
     X(float, friction, CORE_COLUMN_STATE)                                                          \
     X(float, rolling, CORE_COLUMN_STATE)                                                           \
     X(float, restitution, CORE_COLUMN_STATE)                                                       \
