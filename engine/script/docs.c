@@ -28,25 +28,26 @@ CORE_PRINTF(2, 3) static void add(text *t, const char *fmt, ...) {
 
 // ---- parts ----
 
-static const char *phases_text(unsigned phases) {
+static void add_phases(text *t, unsigned phases) {
     static const struct {
         unsigned phases;
         const char *text;
     } names[] = {{BIND_ANY, "everywhere"},
                  {BIND_RUNNING, "load and all later callbacks"},
-                 {BIND_SIM, "load, fixed and callbacks of the step"},
-                 {BIND_VIEW, "update, draw, event"},
-                 {BIND_DRAW, "draw"},
-                 {BIND_VIEW | BIND_QUIT, "update, draw, event, quit"},
-                 {BIND_TOP | BIND_CONF | BIND_LOAD, "the file's own code, conf, load"},
-                 {BIND_ANY & ~(unsigned)BIND_CONF, "everywhere but conf"},
-                 {BIND_FIXED | BIND_STEP, "fixed and callbacks of the step"}};
+                 {BIND_SIM, "load, fixed and callbacks of the step"}};
     for (size_t i = 0; i < CORE_COUNT_OF(names); i++) {
         if (names[i].phases == phases) {
-            return names[i].text;
+            add(t, "%s", names[i].text);
+            return;
         }
     }
-    return "see the phases in its declaration";
+    const char *separator = "";
+    for (unsigned phase = 1; phase <= BIND_QUIT; phase <<= 1) {
+        if (phases & phase) {
+            add(t, "%s%s", separator, bind_phase_name(phase));
+            separator = ", ";
+        }
+    }
 }
 
 static void add_default(text *t, const bind_arg *arg) {
@@ -120,8 +121,9 @@ static void add_signature(text *t, const char *owner, const char *join, const bi
 static void add_function(text *t, const char *owner, const char *join, const bind_fn *fn) {
     add(t, "#### %s%s%s\n\n```lua\n", owner, fn->name[0] ? join : "", fn->name);
     add_signature(t, owner, join, fn);
-    add(t, "\n```\n\n%s Callable from: %s.%s\n\n", fn->doc, phases_text(fn->phases),
-        fn->mod ? " Open to mods." : "");
+    add(t, "\n```\n\n%s Callable from: ", fn->doc);
+    add_phases(t, fn->phases);
+    add(t, ".%s\n\n", fn->mod_only ? " Only in mods." : fn->mod ? " Open to mods." : "");
     if (fn->args) {
         add(t, "| argument | expects | default | meaning |\n|---|---|---|---|\n");
         add_rows(t, "", fn->args);

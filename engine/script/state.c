@@ -333,8 +333,9 @@ lua_State *script_state_create(script *s) {
     luaL_openlibs(L);
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
-    static const char *const parts[] = {"base",       "native", "columns", "tasks", "events",
-                                        "containers", "prefab", "save",    "mods",  "reload"};
+    static const char *const parts[] = {"base",   "native",     "columns", "tasks",
+                                        "events", "containers", "prefab",  "save",
+                                        "mods",   "reload",     "inspect"};
     bool good = true;
     for (size_t i = 0; good && i < CORE_COUNT_OF(parts); i++) {
         good = script_run_part(s, L, parts[i]);

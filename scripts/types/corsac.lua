@@ -908,6 +908,11 @@ function corsac.newQueue() end
 ---@return corsac.Heap heap
 function corsac.newHeap() end
 
+---Text of a value for people: tables with their fields, sorted, at most 6 deep.
+---@param value any anything
+---@return string text
+function corsac.inspect(value) end
+
 ---A table that survives hot reloads; made from the default at first.
 ---@param name string of the table
 ---@param default table its first contents

@@ -107,3 +107,21 @@ function corsac.load()
     texts()
     prefabs()
 end
+
+local quit = corsac.quit
+function corsac.quit()
+    quit()
+    local t = { 1, "a\nb", x = { y = {} }, ["odd key"] = true }
+    t.self = t
+    assert(corsac.inspect(t) == [[
+{
+    1,
+    "a\
+b",
+    ["odd key"] = true,
+    self = (the table above),
+    x = {
+        y = {},
+    },
+}]], corsac.inspect(t))
+end

@@ -3,6 +3,8 @@
 
 #include "unity.h"
 
+#include <lauxlib.h>
+
 #include <stdio.h>
 #include <string.h>
 
@@ -29,9 +31,17 @@ static void test_the_editor_stubs_are_fresh(void) {
     must_equal_file(bind_docs_stubs(), "scripts/types/corsac.lua");
 }
 
+static void test_the_editor_stubs_are_lua(void) {
+    lua_State *L = luaL_newstate();
+    int rc = luaL_loadfile(L, "scripts/types/corsac.lua");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, rc, lua_tostring(L, -1));
+    lua_close(L);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_the_reference_page_is_fresh);
     RUN_TEST(test_the_editor_stubs_are_fresh);
+    RUN_TEST(test_the_editor_stubs_are_lua);
     return UNITY_END();
 }
