@@ -1,5 +1,5 @@
-"""What `make docs` takes over from out/lab: charts into docs/charts, maps and the contact solvers'
-fronts into assets/stability.
+"""What `make docs` takes over from out/lab: charts into docs/charts, maps and the fronts of
+solvers and integrators into assets/stability.
 
 Each experiment with `docs = true` whose result is there and belongs to the present experiment file is
 copied, its digest recorded; `stale()` names those whose committed chart or map is of another file.
@@ -84,7 +84,7 @@ def publish(out):
             continue
         shutil.copy(folder / f"{name}.svg", ROOT / f"docs/charts/{name}.svg")
         index[name] = {"digest": digest, "title": result["title"], "sentence": result.get("sentence", "")}
-        if name.startswith("contact_"):
+        if name.startswith(("contact_", "world_")):
             fronts[name] = front_rows(result)
         if is_map:
             (ROOT / f"assets/stability/{name}.json").write_text(compact(result))
