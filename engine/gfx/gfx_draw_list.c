@@ -1,5 +1,6 @@
 // Draw lists: the visible instances of each view of a frame, sorted by state and merged into
 // instanced commands. Views share one upload of instances; each has its own list of their rows.
+#include "gfx/gfx_cull.h"
 #include "gfx/gfx_device_internal.h"
 
 #include <string.h>
@@ -88,7 +89,7 @@ static uint32_t make_keys(gfx_device *d, const gfx_world *world, const gfx_view 
     d->visible.count = d->keys.count = d->scratch.count = 0;
     uint32_t *rows = gfx_grow(&d->visible, sizeof *rows, total), count = total;
     if (world->settings.culling) {
-        count = gfx_cull(s, view, rows);
+        count = CORE_SIMD_SELECT(gfx_cull)(s, view, rows);
     } else {
         for (uint32_t i = 0; i < total; ++i) {
             rows[i] = i;

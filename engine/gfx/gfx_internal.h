@@ -168,8 +168,4 @@ void gfx_view_finish(gfx_view *view);
 // Camera of a world, or one that sees all its instances when none was set.
 gfx_camera gfx_world_camera_or_default(const gfx_world *world);
 
-// ---- culling (gfx_cull.c) ----
-// Rows whose bounding sphere touches the view, ascending. out[count]; returns how many.
-uint32_t gfx_cull(const gfx_instances *instances, const gfx_view *view, uint32_t *out);
-
 #endif

@@ -2,6 +2,7 @@
 #include "support/gfx_fixture.h"
 
 #include "core/rng.h"
+#include "gfx/gfx_cull.h"
 #include "unity.h"
 
 #include <math.h>
@@ -188,6 +189,43 @@ static void test_culling_loses_nothing(void) {
     gfx_fixture_close(&f);
 }
 
+// Every instruction set keeps the same rows, and those that a plain loop in doubles keeps but for
+// spheres within rounding of a plane.
+static void test_culling_on_every_set(void) {
+    gfx_fixture f = gfx_fixture_open(8, 8, true);
+    scatter(&f, 1003);
+    gfx_look(f.world, core_v3(2, 1, 6), core_v3(0, 3, 0));
+    gfx_view view;
+    gfx_camera camera = gfx_world_camera(f.world);
+    gfx_view_make(&camera, 1.5f, &view);
+    const gfx_instances *s = &f.world->instances;
+    static uint32_t kept[2048], again[2048];
+    uint32_t count = gfx_cull_sse2(s, &view, kept), at = 0;
+    TEST_ASSERT_GREATER_THAN(50, count);
+    TEST_ASSERT_LESS_THAN(900, count);
+    for (uint32_t i = 0; i < 1003; ++i) {
+        double least = INFINITY;
+        for (int k = 0; k < GFX_PLANES; ++k) {
+            const float *p = view.plane[k];
+            double d = (double)p[0] * (double)s->cx[i] + (double)p[1] * (double)s->cy[i] +
+                       (double)p[2] * (double)s->cz[i] + (double)p[3] + (double)s->cr[i];
+            least = d < least ? d : least;
+        }
+        bool in = at < count && kept[at] == i;
+        at += in;
+        TEST_ASSERT_TRUE(fabs(least) < 1e-4 || in == (least >= 0.0));
+    }
+    if (core_simd_best() >= CORE_SIMD_AVX2) {
+        TEST_ASSERT_EQUAL_UINT32(count, gfx_cull_avx2(s, &view, again));
+        TEST_ASSERT_EQUAL_INT(0, memcmp(kept, again, count * sizeof *kept));
+    }
+    if (core_simd_best() >= CORE_SIMD_AVX512) {
+        TEST_ASSERT_EQUAL_UINT32(count, gfx_cull_avx512(s, &view, again));
+        TEST_ASSERT_EQUAL_INT(0, memcmp(kept, again, count * sizeof *kept));
+    }
+    gfx_fixture_close(&f);
+}
+
 // Reversed-Z without far plane: depth is near/distance within 1e-6 up to 1e6 m.
 static void test_depth(void) {
     gfx_fixture f = gfx_fixture_open(9, 9, true);
@@ -265,6 +303,7 @@ int main(void) {
     RUN_TEST(test_instancing_equals_single_draws);
     RUN_TEST(test_prepass_changes_nothing);
     RUN_TEST(test_culling_loses_nothing);
+    RUN_TEST(test_culling_on_every_set);
     RUN_TEST(test_depth);
     RUN_TEST(test_depth_order_far_away);
     RUN_TEST(test_bad_input);
