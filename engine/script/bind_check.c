@@ -328,6 +328,16 @@ static void check_color(bind_path *path, const bind_arg *arg, int index, float *
     }
 }
 
+// C's strings end at the first zero byte; one inside would cut a name short in silence.
+static const char *check_text(bind_path *path, int index) {
+    size_t length;
+    const char *text = lua_tolstring(path->L, index, &length);
+    if (strlen(text) != length) {
+        fail_at(path, "the string \"%.40s\" goes on behind a zero byte", text);
+    }
+    return text;
+}
+
 static core_handle check_object(bind_path *path, const bind_arg *arg, int index) {
     if (bind_type_at(path->s, path->L, index) != arg->type) {
         expected(path, arg, index);
@@ -499,7 +509,7 @@ static void check_value(bind_path *path, const bind_arg *arg, int index, unsigne
         if (lua_type(L, index) != LUA_TSTRING) {
             expected(path, arg, index);
         }
-        *(const char **)(void *)member = lua_tostring(L, index);
+        *(const char **)(void *)member = check_text(path, index);
         break;
     case BIND_ENUM:
         *(int *)(void *)member = check_enum(path, arg, index);

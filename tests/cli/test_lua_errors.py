@@ -59,6 +59,9 @@ IN_LOAD = [
      "corsac.after: argument 1 (seconds): expected a number in s, >= 0, got the number -1"),
     ("corsac.run(5)", "corsac.run: argument 1 (path): expected a string, got the number 5"),
     ("local x = nil; x.y = 1", "attempt to index local 'x' (a nil value)"),
+    ('corsac.scene.find("a\\0b")',
+     'corsac.scene.find: argument 1 (name): the string "a" goes on behind a zero byte'),
+    ('corsac.json.encode({ x = "a\\0b" })', "corsac.json.encode: value.x is a string with a zero byte"),
     ("error({})", ""),
 ]
 
