@@ -29,14 +29,16 @@ static dvec core_support(const core_set *s, dvec d) {
         double k = side > 0 ? (double)c->radius / side : 0;
         p = (dvec){l.x * k, l.y < 0 ? -(double)c->half_height : (double)c->half_height, l.z * k};
     } else {
-        double best = 0;
+        // Among corners that float cannot tell apart any serves; the distance is taken in double.
+        const core_vec3 f = {(float)l.x, (float)l.y, (float)l.z};
+        float best = -1e38f;
+        uint32_t corner = 0;
         for (uint32_t i = 0; i < c->count; i++) {
-            dvec q = d_of(c->point[i]);
-            double along = d_dot(q, l);
-            if (i == 0 || along > best) {
-                best = along, p = q;
-            }
+            float along = core_v3_dot(c->point[i], f);
+            corner = along > best ? i : corner;
+            best = along > best ? along : best;
         }
+        p = d_of(c->point[corner]);
     }
     return d_add(s->at, d_rotate(c->rotation, p));
 }
