@@ -523,6 +523,7 @@ static const bind_fn functions[] = {
 static const bind_module modules[] = {
     {"corsac.phys", "Rigid bodies: metres, kilograms, seconds, radians.", functions},
     {"corsac.phys", "", bind_region_functions},
+    {"corsac.phys", "", bind_ask_functions},
     {0}};
 static const bind_type *const types[] = {&bind_body_type, &bind_trigger_type, &bind_field_type,
                                          NULL};

@@ -5,6 +5,7 @@
 #include "script/bind.h"
 
 extern const bind_fn bind_region_functions[];
+extern const bind_fn bind_ask_functions[]; // bind_ask.c: rays, overlaps, closest points
 extern const bind_type bind_trigger_type, bind_field_type;
 
 // Number of a layer by name, made when it is new; raises a Lua error when there are 32.

@@ -1225,6 +1225,84 @@ function corsac.phys.newTrigger(options) end
 ---@return corsac.Field field
 function corsac.phys.newField(options) end
 
+---@class corsac.phys.rayCast.options
+---@field layer? string sees only bodies of this layer; without, all
+---@field skip? corsac.Body a body that is not seen
+
+---Nearest body on the way, where it is hit, its normal there, and the part of the way.
+---@param x number from here
+---@param y number
+---@param z number
+---@param dx number as far as this
+---@param dy number
+---@param dz number
+---@param options? corsac.phys.rayCast.options what is seen
+---@return corsac.Body? body
+---@return number x
+---@return number y
+---@return number z
+---@return number nx
+---@return number ny
+---@return number nz
+---@return number fraction
+function corsac.phys.rayCast(x, y, z, dx, dy, dz, options) end
+
+---@class corsac.phys.sphereCast.options
+---@field layer? string sees only bodies of this layer; without, all
+---@field skip? corsac.Body a body that is not seen
+
+---As rayCast, with a ball that is carried along the way.
+---@param x number from here
+---@param y number
+---@param z number
+---@param radius number of the ball
+---@param dx number as far as this
+---@param dy number
+---@param dz number
+---@param options? corsac.phys.sphereCast.options what is seen
+---@return corsac.Body? body
+---@return number x
+---@return number y
+---@return number z
+---@return number nx
+---@return number ny
+---@return number nz
+---@return number fraction
+function corsac.phys.sphereCast(x, y, z, radius, dx, dy, dz, options) end
+
+---@class corsac.phys.closest.options
+---@field layer? string sees only bodies of this layer; without, all
+---@field skip? corsac.Body a body that is not seen
+
+---Closest point of any body within a distance.
+---@param x number from here
+---@param y number
+---@param z number
+---@param radius number farthest distance
+---@param options? corsac.phys.closest.options what is seen
+---@return corsac.Body? body
+---@return number x
+---@return number y
+---@return number z
+---@return number nx
+---@return number ny
+---@return number nz
+---@return number distance
+function corsac.phys.closest(x, y, z, radius, options) end
+
+---@class corsac.phys.overlapSphere.options
+---@field layer? string sees only bodies of this layer; without, all
+---@field skip? corsac.Body a body that is not seen
+
+---The bodies that a ball overlaps, at most 256 of them.
+---@param x number from here
+---@param y number
+---@param z number
+---@param radius number of the ball
+---@param options? corsac.phys.overlapSphere.options what is seen
+---@return corsac.Body[] bodies
+function corsac.phys.overlapSphere(x, y, z, radius, options) end
+
 ---Camera, lights and what is drawn over the frame.
 corsac.gfx = {}
 
