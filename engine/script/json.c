@@ -100,6 +100,9 @@ static void write_value(json_writer *w, int index, const char *key) {
         core_json_bool(&w->out, key, lua_toboolean(L, index));
         break;
     case LUA_TSTRING:
+        if (strlen(lua_tostring(L, index)) != lua_objlen(L, index)) {
+            refuse(w, "is a string with a zero byte");
+        }
         core_json_string(&w->out, key, lua_tostring(L, index));
         break;
     case LUA_TNUMBER:
