@@ -1,10 +1,11 @@
 #include "app/lab_kernels.h"
 
+#include "anim/lab.h"
 #include "gfx/gfx_lab.h"
 #include "phys/lab.h"
 #include "script/lab.h"
 
 const core_lab_kernel *const app_lab_kernels[] = {
-    &core_lab_math,   &core_lab_layout, &phys_lab_motion,   &phys_lab_broad,
-    &gfx_lab_cluster, &gfx_lab_frame,   &script_lab_access, NULL,
+    &core_lab_math, &core_lab_layout,   &phys_lab_motion, &phys_lab_broad, &gfx_lab_cluster,
+    &gfx_lab_frame, &script_lab_access, &anim_lab_pose,   &anim_lab_pack,  NULL,
 };
