@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/run.h"
+#include "app/lab_ghost.h"
 #include "core/file.h"
 
 bool app_device_open(app_run *r, bool window) {
@@ -36,6 +36,9 @@ bool app_frame(app_run *r, float alpha) {
     script_draw(r->script);
     core_stage_end(r->metrics, CORE_STAGE_SCRIPT);
     scene_sync_draw(r->scene, alpha);
+    if (r->ghost) {
+        r->caption = app_ghost_draw(r->ghost);
+    }
     if (r->caption) {
         const float ink[4] = {1.0f, 1.0f, 1.0f, 1.0f}, back[4] = {0, 0, 0, 0.6f};
         gfx_rect(world, 0, 0, (float)r->width, 62.0f, back);

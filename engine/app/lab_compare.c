@@ -2,6 +2,7 @@
 // step by step side by side: distances of the entities in mm, cost in ms, the first divergence, and
 // one picture with the ghost of b over a.
 #include "app/commands.h"
+#include "app/lab_gap.h"
 #include "app/run.h"
 
 #include <math.h>
@@ -25,16 +26,10 @@ typedef struct side {
     uint8_t *pixels;
 } side;
 
-typedef struct gap { // between the two worlds at one moment
-    double mean_mm, max_mm;
-    scene_entity worst;
-    uint32_t shared, single; // entities alive in both, in one
-} gap;
-
 typedef struct comparison {
     side a, b;
     const char *picture, *metrics;
-    gap last, peak;
+    app_gap last, peak;
     double first_time, visible_time, peak_time; // s; < 0: never
     char first_name[SCENE_NAME_MAX + 32];
 } comparison;
@@ -124,35 +119,9 @@ static bool advance(side *s) {
     return more;
 }
 
-// Same scene, same order of spawning: an entity has the same handle in both worlds.
-static gap measure(const comparison *c) {
-    const scene *a = c->a.run->scene, *b = c->b.run->scene;
-    gap g = {0};
-    double sum = 0;
-    for (uint32_t i = 0; i < scene_entity_count(a); i++) {
-        scene_entity e = scene_entity_at(a, i);
-        core_vec3 p, q;
-        if (!scene_alive(b, e) || !scene_position(a, e, &p) || !scene_position(b, e, &q)) {
-            g.single++;
-            continue;
-        }
-        double x = (double)p.x - (double)q.x, y = (double)p.y - (double)q.y;
-        double z = (double)p.z - (double)q.z, mm = 1e3 * sqrt(x * x + y * y + z * z);
-        sum += mm;
-        g.shared++;
-        if (mm > g.max_mm || g.worst.index == 0) {
-            g.max_mm = mm;
-            g.worst = e;
-        }
-    }
-    g.single += scene_entity_count(b) - g.shared;
-    g.mean_mm = g.shared ? sum / g.shared : 0;
-    return g;
-}
-
 static void note(comparison *c) {
     double t = c->a.time;
-    c->last = measure(c);
+    c->last = app_gap_measure(c->a.run->scene, c->b.run->scene);
     if (c->last.max_mm > 0 && c->first_time < 0) {
         const char *name = scene_entity_name(c->a.run->scene, c->last.worst);
         c->first_time = t;

@@ -1,7 +1,7 @@
 // The loop: fixed steps, with or without a window.
 #include <string.h>
 
-#include "app/run.h"
+#include "app/lab_ghost.h"
 #include "core/clock.h"
 #include "core/log.h"
 
@@ -90,7 +90,7 @@ static void close_step(app_run *r, const gfx_event *event, uint32_t events, uint
 static void step(app_run *r) {
     gfx_event event[APP_MAX_EVENTS];
     uint32_t events = take_events(r, event);
-    uint64_t number = r->report.steps + 1, before = core_alloc_count();
+    uint64_t number = r->report.steps + 1, before = core_alloc_count(), begin = core_clock_ns();
     core_metrics_step_begin(r->metrics);
     app_input_step(&r->input, event, events);
     core_stage_begin(r->metrics, CORE_STAGE_SCRIPT);
@@ -120,6 +120,26 @@ static void step(app_run *r) {
     }
     core_metrics_step_end(r->metrics);
     close_step(r, event, events, allocations);
+    if (r->ghost) {
+        app_ghost_step(r->ghost, event, events, core_clock_ns() - begin);
+    }
+}
+
+static void drop_ghost(app_run *r) {
+    if (r->ghost) {
+        app_ghost_destroy(r->ghost);
+        r->ghost = NULL;
+        r->caption = NULL;
+    }
+}
+
+// The ghost starts with the scene, so that both have lived the same.
+static void ask_for_ghost(app_run *r) {
+    if (r->ghost) {
+        drop_ghost(r);
+    } else if (!r->recorder && !r->replay) {
+        r->ghost_wanted = r->reload = true;
+    }
 }
 
 // Not while a run is recorded or replayed: what changed is not in the recording.
@@ -142,9 +162,15 @@ static bool between_steps(app_run *r) {
             strcpy(r->entry, r->next_scene);
         }
         r->next_scene[0] = 0;
+        drop_ghost(r);
         app_scene_close(r);
         r->reload = false;
-        return app_scene_open(r);
+        bool opened = app_scene_open(r);
+        if (opened && r->ghost_wanted) {
+            r->ghost = app_ghost_create(r);
+        }
+        r->ghost_wanted = false;
+        return opened;
     }
     return true;
 }
@@ -182,6 +208,9 @@ static void program_key(app_run *r, const gfx_event *e) {
         r->overlay = !r->overlay;
         break;
     case KEY_F1 + 1:
+        ask_for_ghost(r);
+        break;
+    case KEY_F1 + 3:
         r->paused = !r->paused;
         break;
     case KEY_F1 + 2:
@@ -189,6 +218,7 @@ static void program_key(app_run *r, const gfx_event *e) {
         break;
     case KEY_F1 + 4:
         r->reload |= !r->recorder && !r->replay;
+        r->ghost_wanted |= r->ghost != NULL;
         break;
     }
 }
@@ -234,7 +264,7 @@ static void window_frame(app_run *r, double passed, float alpha) {
     core_stage_begin(r->metrics, CORE_STAGE_SCRIPT);
     script_update(r->script, passed);
     core_stage_end(r->metrics, CORE_STAGE_SCRIPT);
-    if (!app_frame(r, wanted ? 1.0f : alpha)) {
+    if (!app_frame(r, wanted || r->ghost ? 1.0f : alpha)) {
         return;
     }
     if (wanted) {
@@ -290,5 +320,6 @@ void app_loop(app_run *r) {
     }
     app_progress_end(r);
     last_picture(r);
+    drop_ghost(r);
     r->report.wall_s = (double)(core_clock_ns() - begin) * 1e-9;
 }

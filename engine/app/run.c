@@ -21,7 +21,9 @@ static void on_assert(const char *expr, const char *file, int line) {
     char text[256];
     snprintf(text, sizeof text, "%s:%d: %s", file, line, expr);
     core_log(CORE_LOG_ERROR, "assert failed: %s", text);
-    app_text_list_add(&assert_report->asserts, text);
+    if (assert_report) {
+        app_text_list_add(&assert_report->asserts, text);
+    }
 }
 
 static void on_log(void *ctx, core_log_level level, const char *text) {
@@ -187,6 +189,9 @@ int app_run_destroy(app_run *r) {
     core_metrics_destroy(r->metrics);
     core_jobs_destroy(r->jobs);
     core_vfs_destroy(r->vfs);
+    if (assert_report == &r->report) {
+        assert_report = NULL;
+    }
     app_report_release(&r->report);
     core_free(r->run_data);
     core_free(r);

@@ -54,10 +54,12 @@ typedef struct app_run {
     bool paused, single_step, overlay, quit, reload;
     float time_scale;
     int exit_code;
-    char next_scene[256]; // "": stay
-    char *run_data;       // JSON from the former scene to the next, NULL: none
-    const char *caption;  // drawn over every frame, NULL: none
-    app_exit failed;      // first reason that ended the run, APP_EXIT_FINE: none
+    char next_scene[256];    // "": stay
+    char *run_data;          // JSON from the former scene to the next, NULL: none
+    const char *caption;     // drawn over every frame, NULL: none
+    struct app_ghost *ghost; // F2: the reference beside the live run, NULL: none
+    bool ghost_wanted;       // from the next reload on
+    app_exit failed;         // first reason that ended the run, APP_EXIT_FINE: none
 } app_run;
 
 // run.c: create never gives NULL; r->failed says why it cannot be opened. destroy gives the exit

@@ -147,6 +147,18 @@ void phys_observe_contacts(phys_world *w, phys_observation *o) {
     core_arena_rewind(&w->scratch, mark);
 }
 
+// Balls and boxes; other shapes have no simple mesh.
+bool phys_observe_shape(const phys_world *w, uint32_t row, phys_shape_type *type, core_vec3 *half) {
+    if (row >= core_columns_count(&w->bodies.set) || w->bodies.shape[row] == 0) {
+        return false;
+    }
+    uint32_t i = phys_slot_row(&w->shapes.set, w->bodies.shape[row]);
+    float r = w->shapes.radius[i];
+    *type = (phys_shape_type)w->shapes.type[i];
+    *half = *type == PHYS_SPHERE ? core_v3(r, r, r) : w->shapes.half[i];
+    return *type == PHYS_SPHERE || *type == PHYS_BOX;
+}
+
 phys_effort phys_observe_effort(const phys_world *w) {
     return (phys_effort){w->solver->name, w->substeps ? w->substeps : w->solver->substeps,
                          w->iterations ? w->iterations : w->solver->iterations};

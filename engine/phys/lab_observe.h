@@ -25,6 +25,11 @@ typedef struct phys_observation {
 void phys_observe_motion(phys_world *world, phys_observation *o);
 void phys_observe_contacts(phys_world *world, phys_observation *o);
 
+// Geometry of a body's first shape, for showing it: its type, and half of its extents in its own
+// frame (m). False for others than balls and boxes.
+bool phys_observe_shape(const phys_world *world, uint32_t row, phys_shape_type *type,
+                        core_vec3 *half);
+
 // The method that solves contacts, and what it spends a step: sub-steps and iterations.
 typedef struct phys_effort {
     const char *solver;

@@ -58,7 +58,7 @@ class Window(SceneCase):
         self.assertGreater(png.compare(*shots), 0.02)
 
     def test_pause_and_single_step(self):
-        code, out, err = self.press("key:F2 wait:0.8 key:F3 wait:0.2 key:F3 wait:0.2 key:Escape",
+        code, out, err = self.press("key:F4 wait:0.8 key:F3 wait:0.2 key:F3 wait:0.2 key:Escape",
                                     "function corsac.fixed() corsac.log('step ' .. corsac.getStep()) end")
         self.assertEqual(code, 0, err)
         steps = err.count("step ")
@@ -66,6 +66,28 @@ class Window(SceneCase):
                                 "function corsac.fixed() corsac.log('step ' .. corsac.getStep()) end")
         self.assertEqual(free, 0)
         self.assertTrue(20 < steps < 130, steps)
+
+    def test_f2_shows_the_ghost_of_the_reference_world(self):
+        text = """
+            function corsac.load()
+              corsac.log("loaded")
+              corsac.scene.spawn{ position = { 0, -0.5, 0 }, mesh = "box", color = { 0.4, 0.4, 0.4 },
+                body = { type = "static", shape = "box", size = { 9, 1, 9 } } }
+              for i = 1, 12 do
+                corsac.scene.spawn{ position = { 0.1 * (i % 3), 1.1 * i, 0 }, mesh = "sphere",
+                  color = { 0.9, 0.8, 0.7 }, body = { shape = "sphere", radius = 0.5, restitution = 0.5 } }
+              end
+            end"""
+        shots = []
+        for keys in ("wait:0.1", "key:F2 wait:0.1"):
+            path = self.dir / f"ghost{len(shots)}.png"
+            code, _, err = self.press(keys, text, "--steps", 240, "--shot", f"{path}@240")
+            self.assertEqual(code, 0, err)
+            shots.append(path)
+        self.assertEqual(err.count("loaded"), 3, err)  # at the start, again for F2, and the ghost's own
+        self.assertGreater(png.compare(*shots), 0.02)
+        code, _, err = self.press("key:F2 wait:0.4 key:F2 wait:0.2 key:F2 wait:0.2 key:Escape", text)
+        self.assertEqual((code, err.count("loaded")), (0, 5), err)
 
     def test_an_error_shows_and_f5_loads_again(self):
         text = """
