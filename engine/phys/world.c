@@ -8,14 +8,15 @@
 
 static const phys_broad_method *const broads[] = {&phys_broad_tree, &phys_broad_sap,
                                                   &phys_broad_brute};
-static const phys_solver_method *const solvers[] = {&phys_solver_soft, &phys_solver_sequential};
+static const phys_solver_method *const solvers[] = {&phys_solver_soft, &phys_solver_sequential,
+                                                    &phys_solver_impulse};
 
 phys_world_desc phys_world_desc_default(void) {
     return (phys_world_desc){.gravity = {0.0f, -9.81f, 0.0f}, .cookie = PHYS_WORLD_COOKIE};
 }
 
 const char *const *phys_method_names(const char *kind) {
-    static const char *const solver[] = {"soft", "sequential", NULL};
+    static const char *const solver[] = {"soft", "sequential", "impulse", NULL};
     static const char *const broad[] = {"auto", "tree", "sap", "brute", NULL};
     static const char *const integrator[] = {"exact", "semi", "euler", "verlet", "rk4", NULL};
     static const char *const none[] = {NULL};
@@ -49,7 +50,8 @@ static bool pick_solver(phys_world *w, const char *name) {
             return true;
         }
     }
-    return core_fail("phys setting solver: '%s' is unknown, expected soft or sequential", name);
+    return core_fail("phys setting solver: '%s' is unknown, expected soft, sequential or impulse",
+                     name);
 }
 
 static bool check_desc(const phys_world_desc *d) {

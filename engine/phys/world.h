@@ -298,7 +298,7 @@ typedef struct phys_geom {
 } phys_geom;
 
 extern const phys_broad_method phys_broad_brute, phys_broad_sap, phys_broad_tree;
-extern const phys_solver_method phys_solver_sequential, phys_solver_soft;
+extern const phys_solver_method phys_solver_sequential, phys_solver_soft, phys_solver_impulse;
 
 static inline core_vec3 phys_get3(const float *x, const float *y, const float *z, uint32_t i) {
     return core_v3(x[i], y[i], z[i]);
