@@ -222,14 +222,19 @@ bool nav_mesh_search(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3
 // A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when
 // its graph has changed; nav_path_update does so at once.
 nav_path nav_path_create(nav_world *world, nav_graph graph, core_vec3 start, core_vec3 goal);
+// The same across a walkable surface, its bends half a cell off the corners; without a way there is
+// none in part (NAV_NO_PATH, no points).
+nav_path nav_path_create_on_mesh(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal);
 bool nav_path_destroy(nav_world *world, nav_path path);
 bool nav_path_alive(const nav_world *world, nav_path path);
 bool nav_path_set(nav_world *world, nav_path path, core_vec3 start, core_vec3 goal);
 nav_status nav_path_update(nav_world *world, nav_path path);
 nav_status nav_path_status(const nav_world *world, nav_path path);
-double nav_path_cost(const nav_world *world, nav_path path); // of its links
+double nav_path_cost(const nav_world *world, nav_path path); // of its links; length in m
+// Points of the way: positions of the graph's nodes, or start, corners and goal on a surface.
 uint32_t nav_path_count(const nav_world *world, nav_path path);
-uint32_t nav_path_node(const nav_world *world, nav_path path, uint32_t i); // NAV_NO_NODE beyond
+bool nav_path_point(const nav_world *world, nav_path path, uint32_t i, core_vec3 *out);
+uint32_t nav_path_node(const nav_world *world, nav_path path, uint32_t i); // NAV_NO_NODE: none
 // Times it has been planned: changes when the nodes may have.
 uint32_t nav_path_plans(const nav_world *world, nav_path path);
 
@@ -263,6 +268,8 @@ bool nav_agent_destroy(nav_world *world, nav_agent agent);
 bool nav_agent_alive(const nav_world *world, nav_agent agent);
 // Walks on a graph to a point: to the node nearest to it, then straight to it.
 bool nav_agent_go(nav_world *world, nav_agent agent, nav_graph graph, core_vec3 goal);
+// Walks across a surface to the point of it nearest to `goal`.
+bool nav_agent_go_on_mesh(nav_world *world, nav_agent agent, nav_mesh mesh, core_vec3 goal);
 bool nav_agent_stop(nav_world *world, nav_agent agent);
 nav_agent_state nav_agent_status(const nav_world *world, nav_agent agent);
 bool nav_agent_position(const nav_world *world, nav_agent agent, core_vec3 *out);

@@ -110,34 +110,62 @@ static void anchor(nav_agents *a, uint32_t row) {
     a->stalled[row] = 0.0f;
 }
 
-bool nav_agent_go(nav_world *w, nav_agent agent, nav_graph graph, core_vec3 goal) {
-    uint32_t row = agent_row(w, agent);
-    if (row == CORE_NO_ROW || nav_graph_row(w, graph) == CORE_NO_ROW) {
+static bool check_goal(core_vec3 goal) {
+    return finite_point(goal) ||
+           core_fail("nav agent: sent to (%g, %g, %g), expected finite numbers", (double)goal.x,
+                     (double)goal.y, (double)goal.z);
+}
+
+// Sets out on a path that was just planned, which replaces the one it had.
+static bool set_out(nav_world *w, uint32_t row, nav_path path, core_vec3 goal) {
+    nav_agents *a = &w->agent;
+    if (core_handle_is_null(path)) {
         return false;
     }
-    nav_agents *a = &w->agent;
-    if (!finite_point(goal)) {
-        return core_fail("nav agent: sent to (%g, %g, %g), expected finite numbers", (double)goal.x,
-                         (double)goal.y, (double)goal.z);
+    if (!core_handle_equal(path, a->path[row]) && nav_path_alive(w, a->path[row])) {
+        nav_path_destroy(w, a->path[row]);
     }
-    uint32_t path = core_columns_row(&w->path.set, a->path[row]);
-    if (path != CORE_NO_ROW && core_handle_equal(w->path.head[path].graph, graph)) {
-        nav_path_set(w, a->path[row], place(a, row), goal);
-    } else {
-        nav_path made = nav_path_create(w, graph, place(a, row), goal);
-        if (core_handle_is_null(made)) {
-            return false;
-        }
-        if (path != CORE_NO_ROW) {
-            nav_path_destroy(w, a->path[row]);
-        }
-        a->path[row] = made;
-    }
+    a->path[row] = path;
     a->gx[row] = goal.x, a->gy[row] = goal.y, a->gz[row] = goal.z;
     a->plans[row] = 0; // corners are set in the next step
     anchor(a, row);
     a->state[row] = NAV_AGENT_WALKING;
     return true;
+}
+
+bool nav_agent_go(nav_world *w, nav_agent agent, nav_graph graph, core_vec3 goal) {
+    uint32_t row = agent_row(w, agent);
+    if (row == CORE_NO_ROW || nav_graph_row(w, graph) == CORE_NO_ROW || !check_goal(goal)) {
+        return false;
+    }
+    nav_path path = w->agent.path[row];
+    uint32_t old = core_columns_row(&w->path.set, path);
+    if (old != CORE_NO_ROW && core_handle_equal(w->path.head[old].graph, graph)) {
+        nav_path_set(w, path, place(&w->agent, row), goal);
+    } else {
+        path = nav_path_create(w, graph, place(&w->agent, row), goal);
+    }
+    return set_out(w, row, path, goal);
+}
+
+bool nav_agent_go_on_mesh(nav_world *w, nav_agent agent, nav_mesh mesh, core_vec3 goal) {
+    uint32_t row = agent_row(w, agent);
+    if (row == CORE_NO_ROW || !check_goal(goal)) {
+        return false;
+    }
+    nav_path path = w->agent.path[row];
+    uint32_t old = core_columns_row(&w->path.set, path);
+    if (old != CORE_NO_ROW && core_handle_equal(w->path.head[old].mesh, mesh) &&
+        nav_mesh_alive(w, mesh)) {
+        nav_path_set(w, path, place(&w->agent, row), goal);
+    } else {
+        path = nav_path_create_on_mesh(w, mesh, place(&w->agent, row), goal);
+    }
+    uint32_t count = nav_path_alive(w, path) ? nav_path_count(w, path) : 0;
+    if (count) {
+        nav_path_point(w, path, count - 1, &goal); // on the surface
+    }
+    return set_out(w, row, path, goal);
 }
 
 bool nav_agent_stop(nav_world *w, nav_agent agent) {
@@ -224,13 +252,6 @@ bool nav_agent_set_driven(nav_world *w, nav_agent agent, bool driven) {
 
 // ---- following ----
 
-static core_vec3 node_at(const nav_world *w, const nav_path_head *p, const nav_path_nodes *nodes,
-                         uint32_t i) {
-    const nav_graph_data *g = w->graph.data[core_columns_row(&w->graph.set, p->graph)];
-    uint32_t node = nodes->node[i];
-    return (core_vec3){g->node.px[node], g->node.py[node], g->node.pz[node]};
-}
-
 // Whether p lies beside the inside of the segment from a to b.
 static bool between(core_vec3 a, core_vec3 b, core_vec3 p) {
     core_vec3 way = core_v3_sub(b, a);
@@ -251,17 +272,14 @@ static bool passed(core_vec3 a, core_vec3 b, core_vec3 p, float far) {
 static void take_path(nav_world *w, uint32_t row, uint32_t path) {
     nav_agents *a = &w->agent;
     const nav_path_head *p = &w->path.head[path];
-    const nav_path_nodes *nodes = &w->path.nodes[path];
+    const core_vec3 *point = w->path.points[path].point;
     a->corner[row] = 0;
     a->corners[row] = p->count;
     a->plans[row] = p->plans;
     if (p->count >= 2) {
-        core_vec3 first = node_at(w, p, nodes, 0), second = node_at(w, p, nodes, 1);
-        a->corner[row] = between(first, second, place(a, row));
+        a->corner[row] = between(point[0], point[1], place(a, row));
         if (p->status == NAV_FOUND) {
-            core_vec3 last = node_at(w, p, nodes, p->count - 1);
-            core_vec3 before = node_at(w, p, nodes, p->count - 2);
-            a->corners[row] -= between(before, last, goal_of(a, row));
+            a->corners[row] -= between(point[p->count - 2], point[p->count - 1], goal_of(a, row));
         }
     }
 }
@@ -270,7 +288,7 @@ static void take_path(nav_world *w, uint32_t row, uint32_t path) {
 static bool way_point(const nav_world *w, uint32_t row, uint32_t path, uint32_t i, core_vec3 *out) {
     const nav_agents *a = &w->agent;
     if (i < a->corners[row]) {
-        *out = node_at(w, &w->path.head[path], &w->path.nodes[path], i);
+        *out = w->path.points[path].point[i];
         return true;
     }
     *out = goal_of(a, row);
@@ -376,7 +394,7 @@ static void note_progress(nav_world *w, uint32_t row, float dt) {
 static bool keep_path(nav_world *w, uint32_t row, uint32_t path) {
     nav_agents *a = &w->agent;
     nav_path_head *p = &w->path.head[path];
-    if (nav_graph_alive(w, p->graph) && p->version != nav_graph_version(w, p->graph)) {
+    if (nav_path_outdated(w, path)) {
         nav_path_set(w, a->path[row], place(a, row), goal_of(a, row));
     }
     nav_path_refresh(w, path);
@@ -471,6 +489,17 @@ static void move(nav_agents *a, uint32_t row, float dt) {
     }
 }
 
+// Who crosses a surface stays on it, whatever others push: at its border it slides along, and its
+// height is the ground's.
+static void keep_on_surface(nav_world *w, uint32_t row) {
+    nav_agents *a = &w->agent;
+    uint32_t path = core_columns_row(&w->path.set, a->path[row]);
+    core_vec3 p = place(a, row);
+    if (path != CORE_NO_ROW && !a->driven[row] && nav_mesh_hold(w, w->path.head[path].mesh, &p)) {
+        a->px[row] = p.x, a->py[row] = p.y, a->pz[row] = p.z;
+    }
+}
+
 void nav_agents_step(nav_world *w, float dt) {
     nav_agents *a = &w->agent;
     uint32_t count = core_columns_count(&a->set);
@@ -485,5 +514,6 @@ void nav_agents_step(nav_world *w, float dt) {
     }
     for (uint32_t row = 0; row < count; row++) {
         move(a, row, dt);
+        keep_on_surface(w, row);
     }
 }

@@ -15,6 +15,8 @@
 #define KEEP_RIGHT 0.03f // rad; who must give way does so to the same side, or all would wait
 #define WRIGGLE    0.8f  // rad for each second without progress, times a share of its own
 #define MARGIN     0.1f  // of the radius kept free, since velocities change only so fast
+#define WALLS      4u
+#define WALL_TIME  0.2f // s within which a velocity must not lead off the surface
 #define PARALLEL   1e-6f
 
 typedef struct flat {
@@ -87,16 +89,20 @@ static uint32_t best_velocity(const half_plane *plane, uint32_t count, float spe
 
 // No velocity is allowed from plane `first` on: the largest distance beyond any plane is made as
 // small as it can be, which is a linear program over the lines where two planes are broken alike.
-static void least_broken(const half_plane *plane, uint32_t count, uint32_t first, float speed,
-                         flat *out) {
+// The first `walls` planes are kept all the same.
+static void least_broken(const half_plane *plane, uint32_t count, uint32_t first, uint32_t walls,
+                         float speed, flat *out) {
     float broken = 0.0f;
-    for (uint32_t i = first; i < count; i++) {
+    for (uint32_t i = CORE_MAX(first, walls); i < count; i++) {
         if (det(plane[i].way, sub(plane[i].point, *out)) <= broken) {
             continue;
         }
-        half_plane alike[NEIGHBOURS];
+        half_plane alike[NEIGHBOURS + WALLS];
         uint32_t n = 0;
-        for (uint32_t k = 0; k < i; k++) {
+        for (; n < walls; n++) {
+            alike[n] = plane[n];
+        }
+        for (uint32_t k = walls; k < i; k++) {
             float across = det(plane[i].way, plane[k].way);
             half_plane line;
             if (core_absf(across) <= PARALLEL) {
@@ -225,7 +231,30 @@ static flat aside(const nav_agents *a, uint32_t row, flat want) {
     return (flat){want.x * c - want.z * s, want.z * c + want.x * s};
 }
 
-static void avoid_one(const nav_crowd *c, nav_agents *a, uint32_t row, float dt) {
+// Half-planes that keep an agent on the surface it crosses.
+static uint32_t wall_planes(const nav_world *w, uint32_t row, half_plane *out) {
+    static const flat towards[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    const nav_agents *a = &w->agent;
+    uint32_t path = core_columns_row(&w->path.set, a->path[row]), n = 0;
+    if (path == CORE_NO_ROW || core_handle_is_null(w->path.head[path].mesh)) {
+        return 0;
+    }
+    float room[4];
+    core_vec3 p = {a->px[row], a->py[row], a->pz[row]};
+    nav_mesh_room(w, w->path.head[path].mesh, p, WALL_TIME * a->max_speed[row], room);
+    for (int d = 0; d < 4; d++) {
+        if (room[d] < WALL_TIME * a->max_speed[row]) {
+            float fastest = room[d] / WALL_TIME;
+            out[n++] = (half_plane){{towards[d].x * fastest, towards[d].z * fastest},
+                                    {-towards[d].z, towards[d].x}};
+        }
+    }
+    return n;
+}
+
+static void avoid_one(nav_world *w, uint32_t row, float dt) {
+    const nav_crowd *c = &w->crowd;
+    nav_agents *a = &w->agent;
     flat want = {a->wx[row], a->wz[row]}, now = {a->vx[row], a->vz[row]};
     a->nx[row] = want.x, a->nz[row] = want.z;
     if (stands(a, row)) {
@@ -236,21 +265,22 @@ static void avoid_one(const nav_crowd *c, nav_agents *a, uint32_t row, float dt)
     if (list.count == 0) {
         return;
     }
-    half_plane plane[NEIGHBOURS];
+    half_plane plane[WALLS + NEIGHBOURS];
+    uint32_t walls = wall_planes(w, row, plane), planes = walls;
     for (uint32_t i = 0; i < list.count; i++) {
         uint32_t k = list.slot[i], other = c->row[k];
         flat x = {c->px[k] - a->px[row], c->pz[k] - a->pz[row]};
         flat v = sub(now, (flat){c->vx[k], c->vz[k]});
-        plane[i] =
-            plane_for(x, v, (1.0f + MARGIN) * (a->radius[row] + c->radius[k]), dt, row < other);
+        half_plane *p = &plane[planes++];
+        *p = plane_for(x, v, (1.0f + MARGIN) * (a->radius[row] + c->radius[k]), dt, row < other);
         float share = stands(a, other) ? 1.0f : 0.5f; // who stands does not help
-        plane[i].point = mad(now, plane[i].point, share);
+        p->point = mad(now, p->point, share);
     }
     flat aim = aside(a, row, want);
     flat out;
-    uint32_t kept = best_velocity(plane, list.count, a->max_speed[row], aim, false, &out);
-    if (kept < list.count) {
-        least_broken(plane, list.count, kept, a->max_speed[row], &out);
+    uint32_t kept = best_velocity(plane, planes, a->max_speed[row], aim, false, &out);
+    if (kept < planes) {
+        least_broken(plane, planes, kept, walls, a->max_speed[row], &out);
     }
     a->nx[row] = out.x, a->nz[row] = out.z;
 }
@@ -319,15 +349,14 @@ static void sort_by_cell(nav_crowd *c, const nav_agents *a, uint32_t count) {
 }
 
 typedef struct avoid_job {
-    const nav_crowd *crowd;
-    nav_agents *agent;
+    nav_world *world;
     float dt;
 } avoid_job;
 static void avoid_some(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     (void)chunk, (void)worker;
     const avoid_job *job = ctx;
     for (uint32_t row = begin; row < end; row++) {
-        avoid_one(job->crowd, job->agent, row, job->dt);
+        avoid_one(job->world, row, job->dt);
     }
 }
 
@@ -339,6 +368,6 @@ void nav_crowd_avoid(nav_world *w, float dt) {
     fit(&w->crowd, count);
     measure(&w->crowd, &w->agent, count);
     sort_by_cell(&w->crowd, &w->agent, count);
-    avoid_job job = {&w->crowd, &w->agent, dt};
+    avoid_job job = {w, dt};
     core_jobs_for(w->jobs, count, 128, avoid_some, &job);
 }

@@ -58,20 +58,21 @@ typedef struct nav_graph_data {
 CORE_COLUMNS_DECLARE(nav_graphs, NAV_GRAPH_COLUMNS)
 
 typedef struct nav_path_head {
-    core_handle graph;
-    uint64_t version; // of the graph when it was planned
+    core_handle graph, mesh; // one of them
+    uint64_t version;        // of the graph when it was planned
     double cost;
     core_vec3 start, goal;
     uint32_t status, count, plans;
-    uint32_t nodes_hash; // of the list below, which is not a column
+    uint32_t points_hash; // of the points below, which are no column
 } nav_path_head;
-typedef struct nav_path_nodes {
-    uint32_t *node;
+typedef struct nav_path_points {
+    core_vec3 *point;
+    uint32_t *node; // of a graph
     uint32_t capacity;
-} nav_path_nodes;
+} nav_path_points;
 #define NAV_PATH_COLUMNS(X)                                                                        \
     X(nav_path_head, head, CORE_COLUMN_STATE)                                                      \
-    X(nav_path_nodes, nodes, 0)
+    X(nav_path_points, points, 0)
 CORE_COLUMNS_DECLARE(nav_paths, NAV_PATH_COLUMNS)
 
 #define NAV_AGENT_COLUMNS(X)                                                                       \
@@ -251,6 +252,17 @@ nav_mesh nav_mesh_adopt(nav_world *world, nav_mesh_data *mesh, uint64_t content)
 // Cuts the spans into rectangles and finds edges and turning points. Owns the spans then.
 void nav_mesh_assemble(nav_mesh_data *mesh);
 
+// nav_mesh_search with bends kept `clearance` cells (0..1) clear of the corners they go round.
+bool nav_mesh_way(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
+                  double clearance, nav_result *result, core_vec3 *out, uint32_t capacity);
+// Moves a point to the surface when it is at most two cells off. False when there is none so near.
+bool nav_mesh_hold(const nav_world *world, nav_mesh mesh, core_vec3 *point);
+
+// Distances from a point to the surface's border towards +x, +z, -x, -z, m; FLT_MAX where it is
+// further than `range` or the point is off the surface.
+void nav_mesh_room(const nav_world *world, nav_mesh mesh, core_vec3 point, float range,
+                   float out[4]);
+
 typedef struct nav_point { // on the ground plane, in cells
     double x, z;
 } nav_point;
@@ -306,7 +318,8 @@ double nav_octile(double dx, double dy, double dz);
 // nav_grid.c
 void nav_grid_scratch_release(nav_world *world);
 // nav_path.c
-void nav_path_refresh(nav_world *world, uint32_t row); // plans when its graph has changed
+bool nav_path_outdated(const nav_world *world, uint32_t row); // its graph has changed
+void nav_path_refresh(nav_world *world, uint32_t row);        // plans when its graph has changed
 // nav_avoid.c
 void nav_crowd_avoid(nav_world *world, float dt); // wanted velocities to safe ones
 void nav_crowd_release(nav_crowd *crowd);

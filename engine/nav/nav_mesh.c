@@ -255,13 +255,61 @@ bool nav_mesh_nearest(const nav_world *w, nav_mesh mesh, core_vec3 p, float max_
     return found.span != NAV_NONE;
 }
 
+bool nav_mesh_hold(const nav_world *w, nav_mesh mesh, core_vec3 *p) {
+    uint32_t row = core_columns_row(&w->mesh.set, mesh);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    const nav_mesh_data *m = w->mesh.data[row];
+    place found = locate(m, *p, 2.0);
+    if (found.span != NAV_NONE) {
+        *p = found.square > 0.0 ? world_point(m, found.at, m->span.y[found.span])
+                                : (core_vec3){p->x, m->span.y[found.span], p->z};
+    }
+    return found.span != NAV_NONE;
+}
+
+void nav_mesh_room(const nav_world *w, nav_mesh mesh, core_vec3 p, float range, float out[4]) {
+    uint32_t row = core_columns_row(&w->mesh.set, mesh);
+    for (int d = 0; d < 4; d++) {
+        out[d] = __FLT_MAX__;
+    }
+    const nav_mesh_data *m = row == CORE_NO_ROW ? NULL : w->mesh.data[row];
+    place at = m ? locate(m, p, 2.0) : (place){.span = NAV_NONE};
+    if (at.span == NAV_NONE) {
+        return;
+    }
+    double fx = at.at.x - m->span.x[at.span], fz = at.at.z - m->span.z[at.span];
+    const double ahead[4] = {1.0 - fx, 1.0 - fz, fx, fz};
+    for (int d = 0; d < 4; d++) {
+        double cells = ahead[d];
+        uint32_t span = m->span.link[at.span][d];
+        while (span != NAV_NONE && cells * (double)m->cell_size < (double)range) {
+            span = m->span.link[span][d];
+            cells += 1.0;
+        }
+        if (span == NAV_NONE) {
+            out[d] = (float)(cells * (double)m->cell_size);
+        }
+    }
+}
+
 // ---- search ----
 
 static bool same(nav_point a, nav_point b) { return a.x == b.x && a.z == b.z; }
 
+// A bend, moved away from the closed cell that it goes round by so many cells along both axes.
+static nav_point clear_of_corner(const nav_mesh_data *m, const nav_view *v, double cells) {
+    static const double dir_x[4] = {1, 0, -1, 0}, dir_z[4] = {0, 1, 0, -1};
+    int a = m->turn_closed[v->root_turn], b = (a + 1) % 4;
+    return (nav_point){v->root.x - cells * (dir_x[a] + dir_x[b]),
+                       v->root.z - cells * (dir_z[a] + dir_z[b])};
+}
+
 // Start, bends and goal from the chain of views. Two passes: the chain is read from its end.
 static void write_way(const nav_world *w, const nav_mesh_data *m, uint32_t last, place start,
-                      place goal, nav_result *result, core_vec3 *out, uint32_t capacity) {
+                      place goal, double clearance, nav_result *result, core_vec3 *out,
+                      uint32_t capacity) {
     const nav_view *view = w->views.view;
     uint32_t count = 2;
     nav_point bend = start.at;
@@ -277,7 +325,8 @@ static void write_way(const nav_world *w, const nav_mesh_data *m, uint32_t last,
     bend = start.at;
     for (uint32_t v = last; v != NAV_NONE; v = view[v].parent) {
         if (!same(view[v].root, bend) && view[v].root_turn != NAV_NONE && --i < capacity && out) {
-            out[i] = world_point(m, view[v].root, m->turn_y[view[v].root_turn]);
+            out[i] = world_point(m, clear_of_corner(m, &view[v], clearance),
+                                 m->turn_y[view[v].root_turn]);
         }
         bend = view[v].root;
     }
@@ -286,8 +335,8 @@ static void write_way(const nav_world *w, const nav_mesh_data *m, uint32_t last,
     }
 }
 
-bool nav_mesh_search(nav_world *w, nav_mesh mesh, core_vec3 from, core_vec3 to, nav_result *result,
-                     core_vec3 *out, uint32_t capacity) {
+bool nav_mesh_way(nav_world *w, nav_mesh mesh, core_vec3 from, core_vec3 to, double clearance,
+                  nav_result *result, core_vec3 *out, uint32_t capacity) {
     *result = (nav_result){.status = NAV_INVALID, .reached = NAV_NO_NODE};
     const nav_mesh_data *m = find(w, mesh);
     if (!m) {
@@ -306,7 +355,12 @@ bool nav_mesh_search(nav_world *w, nav_mesh mesh, core_vec3 from, core_vec3 to, 
         result->status = NAV_FOUND;
         result->cost = (v->g + core_sqrt(dx * dx + dz * dz)) * (double)m->cell_size;
         result->reached = m->polygon[goal.span];
-        write_way(w, m, last, start, goal, result, out, capacity);
+        write_way(w, m, last, start, goal, clearance, result, out, capacity);
     }
     return true;
+}
+
+bool nav_mesh_search(nav_world *w, nav_mesh mesh, core_vec3 from, core_vec3 to, nav_result *result,
+                     core_vec3 *out, uint32_t capacity) {
+    return nav_mesh_way(w, mesh, from, to, 0.0, result, out, capacity);
 }

@@ -22,17 +22,32 @@ static bool finite_points(core_vec3 a, core_vec3 b) {
                      (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
 }
 
+static nav_path create(nav_world *w, nav_path_head head) {
+    nav_path path = core_columns_add(&w->path.set);
+    uint32_t row = core_columns_row(&w->path.set, path);
+    if (row != CORE_NO_ROW) {
+        w->path.head[row] = head;
+        nav_path_update(w, path);
+    }
+    return path;
+}
+
 nav_path nav_path_create(nav_world *w, nav_graph graph, core_vec3 start, core_vec3 goal) {
     if (nav_graph_row(w, graph) == CORE_NO_ROW || !finite_points(start, goal)) {
         return CORE_NULL_HANDLE;
     }
-    nav_path path = core_columns_add(&w->path.set);
-    uint32_t row = core_columns_row(&w->path.set, path);
-    if (row != CORE_NO_ROW) {
-        w->path.head[row] = (nav_path_head){.graph = graph, .start = start, .goal = goal};
-        nav_path_update(w, path);
+    return create(w, (nav_path_head){.graph = graph, .start = start, .goal = goal});
+}
+
+nav_path nav_path_create_on_mesh(nav_world *w, nav_mesh mesh, core_vec3 start, core_vec3 goal) {
+    if (!nav_mesh_alive(w, mesh)) {
+        core_fail("nav path: the surface does not exist");
+        return CORE_NULL_HANDLE;
     }
-    return path;
+    if (!finite_points(start, goal)) {
+        return CORE_NULL_HANDLE;
+    }
+    return create(w, (nav_path_head){.mesh = mesh, .start = start, .goal = goal});
 }
 
 bool nav_path_destroy(nav_world *w, nav_path path) {
@@ -40,8 +55,9 @@ bool nav_path_destroy(nav_world *w, nav_path path) {
     if (row == CORE_NO_ROW) {
         return false;
     }
-    core_free(w->path.nodes[row].node);
-    w->path.nodes[row] = (nav_path_nodes){0};
+    core_free(w->path.points[row].point);
+    core_free(w->path.points[row].node);
+    w->path.points[row] = (nav_path_points){0};
     return core_columns_remove(&w->path.set, path, NULL, NULL);
 }
 
@@ -60,23 +76,18 @@ bool nav_path_set(nav_world *w, nav_path path, core_vec3 start, core_vec3 goal) 
     return true;
 }
 
-static void fit(nav_path_nodes *nodes, uint32_t count) {
-    if (count > nodes->capacity) {
-        uint32_t wanted = CORE_MAX(count, CORE_MAX(nodes->capacity * 2, 32u));
-        nodes->node = core_realloc(nodes->node, nodes->capacity * sizeof *nodes->node,
-                                   wanted * sizeof *nodes->node);
-        nodes->capacity = wanted;
+static void fit(nav_path_points *p, uint32_t count) {
+    if (count > p->capacity) {
+        uint32_t wanted = CORE_MAX(count, CORE_MAX(p->capacity * 2, 32u));
+        p->point =
+            core_realloc(p->point, p->capacity * sizeof *p->point, wanted * sizeof *p->point);
+        p->node = core_realloc(p->node, p->capacity * sizeof *p->node, wanted * sizeof *p->node);
+        p->capacity = wanted;
     }
 }
 
-static void plan(nav_world *w, uint32_t row) {
-    nav_path_head *p = &w->path.head[row];
-    nav_path_nodes *nodes = &w->path.nodes[row];
-    p->status = NAV_NO_PATH;
-    p->count = 0;
-    p->cost = 0.0;
-    p->plans++;
-    p->version = nav_graph_version(w, p->graph);
+static void plan_on_graph(nav_world *w, const nav_path_head *p, nav_path_points *points,
+                          nav_result *result) {
     nav_query query = nav_query_default();
     query.graph = p->graph;
     query.start = nav_graph_nearest(w, p->graph, p->start, 0.0f);
@@ -84,25 +95,66 @@ static void plan(nav_world *w, uint32_t row) {
     query.heuristic = w->heuristic;
     query.weight = w->weight;
     query.partial = true;
-    nav_result result;
-    if (query.start == NAV_NO_NODE || !nav_graph_search(w, &query, &result, NULL, 0)) {
+    if (query.start == NAV_NO_NODE || !nav_graph_search(w, &query, result, NULL, 0)) {
         return; // an empty graph
     }
-    fit(nodes, result.count);
-    nav_last_path(w, &result, nodes->node, nodes->capacity);
+    fit(points, result->count);
+    nav_last_path(w, result, points->node, points->capacity);
+    for (uint32_t i = 0; i < result->count; i++) {
+        nav_graph_position(w, p->graph, points->node[i], &points->point[i]);
+    }
+}
+
+// Bends half a cell off the corners: who walks exactly along a border is held up by every push.
+#define CORNER_CLEARANCE 0.5
+
+static void plan_on_mesh(nav_world *w, const nav_path_head *p, nav_path_points *points,
+                         nav_result *result) {
+    nav_mesh_way(w, p->mesh, p->start, p->goal, CORNER_CLEARANCE, result, points->point,
+                 points->capacity);
+    if (result->count > points->capacity) {
+        fit(points, result->count);
+        nav_mesh_way(w, p->mesh, p->start, p->goal, CORNER_CLEARANCE, result, points->point,
+                     points->capacity);
+    }
+}
+
+static bool on_mesh(const nav_path_head *p) { return !core_handle_is_null(p->mesh); }
+
+static void plan(nav_world *w, uint32_t row) {
+    nav_path_head *p = &w->path.head[row];
+    nav_path_points *points = &w->path.points[row];
+    nav_result result = {.status = NAV_NO_PATH};
+    if (on_mesh(p)) {
+        plan_on_mesh(w, p, points, &result);
+    } else {
+        p->version = nav_graph_version(w, p->graph);
+        plan_on_graph(w, p, points, &result);
+    }
     p->status = (uint32_t)result.status;
     p->count = result.count;
     p->cost = result.cost;
-    p->nodes_hash = (uint32_t)core_hash(nodes->node, result.count * sizeof *nodes->node, 0);
+    p->plans++;
+    p->points_hash = (uint32_t)core_hash(points->point, result.count * sizeof *points->point, 0);
+}
+
+static bool ground_alive(const nav_world *w, const nav_path_head *p) {
+    return on_mesh(p) ? nav_mesh_alive(w, p->mesh) : nav_graph_alive(w, p->graph);
+}
+
+bool nav_path_outdated(const nav_world *w, uint32_t row) {
+    const nav_path_head *p = &w->path.head[row];
+    return !on_mesh(p) && nav_graph_alive(w, p->graph) &&
+           p->version != nav_graph_version(w, p->graph);
 }
 
 void nav_path_refresh(nav_world *w, uint32_t row) {
     nav_path_head *p = &w->path.head[row];
-    if (!nav_graph_alive(w, p->graph)) {
+    if (!ground_alive(w, p)) {
         p->plans += p->status != NAV_INVALID;
         p->status = NAV_INVALID;
         p->count = 0;
-    } else if (p->version != nav_graph_version(w, p->graph)) {
+    } else if (nav_path_outdated(w, row)) {
         plan(w, row);
     }
 }
@@ -112,7 +164,7 @@ nav_status nav_path_update(nav_world *w, nav_path path) {
     if (row == CORE_NO_ROW) {
         return NAV_INVALID;
     }
-    if (nav_graph_alive(w, w->path.head[row].graph)) {
+    if (ground_alive(w, &w->path.head[row])) {
         plan(w, row);
     } else {
         nav_path_refresh(w, row);
@@ -132,10 +184,18 @@ uint32_t nav_path_count(const nav_world *w, nav_path path) {
     uint32_t row = path_row(w, path);
     return row == CORE_NO_ROW ? 0 : w->path.head[row].count;
 }
+bool nav_path_point(const nav_world *w, nav_path path, uint32_t i, core_vec3 *out) {
+    uint32_t row = path_row(w, path);
+    if (row == CORE_NO_ROW || i >= w->path.head[row].count) {
+        return false;
+    }
+    *out = w->path.points[row].point[i];
+    return true;
+}
 uint32_t nav_path_node(const nav_world *w, nav_path path, uint32_t i) {
     uint32_t row = path_row(w, path);
-    return row == CORE_NO_ROW || i >= w->path.head[row].count ? NAV_NO_NODE
-                                                              : w->path.nodes[row].node[i];
+    bool none = row == CORE_NO_ROW || i >= w->path.head[row].count || on_mesh(&w->path.head[row]);
+    return none ? NAV_NO_NODE : w->path.points[row].node[i];
 }
 uint32_t nav_path_plans(const nav_world *w, nav_path path) {
     uint32_t row = path_row(w, path);

@@ -185,7 +185,7 @@ size_t nav_world_bytes(const nav_world *w) {
                  w->grid_scratch->capacity * (sizeof(nav_grid_record) + sizeof(uint64_t));
     }
     for (uint32_t row = 0; row < core_columns_count(&w->path.set); row++) {
-        bytes += w->path.nodes[row].capacity * sizeof(uint32_t);
+        bytes += w->path.points[row].capacity * (sizeof(core_vec3) + sizeof(uint32_t));
     }
     return bytes;
 }

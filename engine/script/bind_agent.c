@@ -48,6 +48,10 @@ static int go(script *s, lua_State *L, void *args) {
     const go_args *a = args;
     return done(L, nav_agent_go(world_of(s), a->self, a->graph, core_v3(a->x, a->y, a->z)));
 }
+static int cross(script *s, lua_State *L, void *args) {
+    const go_args *a = args;
+    return done(L, nav_agent_go_on_mesh(world_of(s), a->self, a->graph, core_v3(a->x, a->y, a->z)));
+}
 static int stop(script *s, lua_State *L, void *args) {
     return done(L, nav_agent_stop(world_of(s), *(core_handle *)args));
 }
@@ -138,6 +142,11 @@ const bind_fn bind_agent_methods[] = {
          {"graph", BIND_OBJECT, BIND_AT(go_args, graph), "on which", .type = &bind_graph_type},
          POINT(go_args)),
      NULL, sizeof(go_args), BIND_SIM, .run = go},
+    {"cross", "Walks across a surface to the point of it nearest to a point.",
+     BIND_ARGS(
+         {"surface", BIND_OBJECT, BIND_AT(go_args, graph), "on which", .type = &bind_surface_type},
+         POINT(go_args)),
+     NULL, sizeof(go_args), BIND_SIM, .run = cross},
     {"stop", "Stands still.", NULL, NULL, SELF, BIND_SIM, .run = stop},
     {"getState", "\"idle\", \"walking\", \"arrived\" or \"stuck\".", NULL,
      BIND_RETURNS({"state", "string", NULL}), SELF, BIND_RUNNING, .run = get_state},

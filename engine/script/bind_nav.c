@@ -267,6 +267,18 @@ static int path_get_nodes(script *s, lua_State *L, void *args) {
     }
     return 1;
 }
+static int path_get_points(script *s, lua_State *L, void *args) {
+    core_handle self = *(core_handle *)args;
+    uint32_t count = nav_path_count(world_of(s), self);
+    lua_createtable(L, (int)count, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        core_vec3 p = {0, 0, 0};
+        nav_path_point(world_of(s), self, i, &p);
+        bind_push_point(L, p);
+        lua_rawseti(L, -2, (int)i + 1);
+    }
+    return 1;
+}
 static int path_destroy(script *s, lua_State *L, void *args) {
     return done(L, nav_path_destroy(world_of(s), *(core_handle *)args));
 }
@@ -367,6 +379,8 @@ static const bind_fn path_methods[] = {
      BIND_RUNNING, .run = path_get_cost},
     {"getNodes", "Ids of its nodes from start to goal.", NULL,
      BIND_RETURNS({"ids", "integer[]", NULL}), SELF, BIND_RUNNING, .run = path_get_nodes},
+    {"getPoints", "Points of the way from start to goal: tables {x, y, z}.", NULL,
+     BIND_RETURNS({"points", "number[][]", NULL}), SELF, BIND_RUNNING, .run = path_get_points},
     {"destroy", "Removes it.", NULL, NULL, SELF, BIND_SIM, .run = path_destroy},
     {0}};
 
@@ -399,10 +413,17 @@ static const bind_fn functions[] = {
                 .fields = bind_agent_fields}),
      BIND_RETURNS({"agent", "corsac.Agent", NULL}), sizeof(bind_agent_call), BIND_SIM,
      .run = bind_agent_new},
+    {"newSurface",
+     "Finds the ground on which an agent can stand and step, from triangles and boxes.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(bind_surface_call, options), "world and agent",
+                .fields = bind_surface_fields}),
+     BIND_RETURNS({"surface", "corsac.Surface", NULL}), sizeof(bind_surface_call), BIND_SIM,
+     .run = bind_surface_new},
     {0}};
 
 static const bind_module modules[] = {
-    {"corsac.nav", "Waypoint graphs, paths and agents.", functions}, {0}};
-static const bind_type *const types[] = {&bind_graph_type, &bind_path_type, &bind_agent_type, NULL};
+    {"corsac.nav", "Waypoint graphs, walkable surfaces, paths and agents.", functions}, {0}};
+static const bind_type *const types[] = {&bind_graph_type, &bind_path_type, &bind_agent_type,
+                                         &bind_surface_type, NULL};
 
 const bind_room bind_nav_room = {"nav", modules, types};

@@ -4,7 +4,7 @@
 
 #include "script/bind.h"
 
-extern const bind_type bind_graph_type, bind_path_type, bind_agent_type;
+extern const bind_type bind_graph_type, bind_path_type, bind_agent_type, bind_surface_type;
 // Declared in bind_agent.c: newAgent's handler, its arguments and the methods of Agent.
 typedef struct bind_agent_options {
     core_vec3 position;
@@ -18,6 +18,27 @@ typedef struct bind_agent_call {
 extern const bind_arg bind_agent_fields[];
 extern const bind_fn bind_agent_methods[];
 bind_handler bind_agent_new;
+// In bind_surface.c: newSurface's handler and arguments.
+typedef struct bind_surface_options {
+    bind_numbers vertices, triangles;
+    bind_list boxes;
+    float cell_size, radius, height, climb, slope;
+} bind_surface_options;
+typedef struct bind_surface_call {
+    bind_surface_options options;
+} bind_surface_call;
+extern const bind_arg bind_surface_fields[];
+bind_handler bind_surface_new;
 bool bind_agent_alive(script *s, core_handle h);
+
+// Pushes a table {x, y, z}.
+static inline void bind_push_point(lua_State *L, core_vec3 p) {
+    const float number[3] = {p.x, p.y, p.z};
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        lua_pushnumber(L, (double)number[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
 
 #endif

@@ -556,6 +556,10 @@ function Path:getCost() end
 ---@return integer[] ids
 function Path:getNodes() end
 
+---Points of the way from start to goal: tables {x, y, z}.
+---@return number[][] points
+function Path:getPoints() end
+
 ---Removes it.
 function Path:destroy() end
 
@@ -569,6 +573,13 @@ local Agent = {}
 ---@param y number
 ---@param z number
 function Agent:go(graph, x, y, z) end
+
+---Walks across a surface to the point of it nearest to a point.
+---@param surface corsac.Surface on which
+---@param x number
+---@param y number
+---@param z number
+function Agent:cross(surface, x, y, z) end
 
 ---Stands still.
 function Agent:stop() end
@@ -609,6 +620,44 @@ function Agent:getEntity() end
 
 ---Removes it; its entity stays.
 function Agent:destroy() end
+
+---Ground on which an agent can walk.
+---@class corsac.Surface
+local Surface = {}
+
+---The point of it nearest to a point sideways, nothing when there is none.
+---@param x number
+---@param y number chooses the storey
+---@param z number
+---@param limit? number largest distance; 0: any
+---@return number? x
+---@return number? y
+---@return number? z
+function Surface:nearest(x, y, z, limit) end
+
+---Shortest way: points {x, y, z} (nil without one) and its length.
+---@param start number[] where it begins
+---@param goal number[] where it ends
+---@return number[][]? points
+---@return number length
+function Surface:findPath(start, goal) end
+
+---The same as a Path.
+---@param start number[] where it begins
+---@param goal number[] where it ends
+---@return corsac.Path path
+function Surface:newPath(start, goal) end
+
+---Area on the ground plane.
+---@return number area
+function Surface:getArea() end
+
+---How many polygons it has.
+---@return integer count
+function Surface:getPolygonCount() end
+
+---Removes it; its paths and agents are left without a way.
+function Surface:destroy() end
 
 ---Samples that sources play.
 ---@class corsac.Sound
@@ -1538,7 +1587,7 @@ function corsac.anim.newAnimator(skeleton, machine, clip) end
 ---@return table[] events
 function corsac.anim.getEvents() end
 
----Waypoint graphs, paths and agents.
+---Waypoint graphs, walkable surfaces, paths and agents.
 corsac.nav = {}
 
 ---@class corsac.nav.newGraph.options
@@ -1572,6 +1621,25 @@ function corsac.nav.newPath(graph, start, goal) end
 ---@param options corsac.nav.newAgent.options the agent
 ---@return corsac.Agent agent
 function corsac.nav.newAgent(options) end
+
+---@class corsac.nav.newSurface.options.boxes
+---@field position? number[] its middle, m
+---@field size number|number[] lengths of its edges, m
+
+---@class corsac.nav.newSurface.options
+---@field vertices? number[] x y z after x y z, m
+---@field triangles? number[] three vertices each, counted from 1, counter-clockwise seen from above
+---@field boxes? corsac.nav.newSurface.options.boxes[] upright boxes
+---@field cellSize? number how exact it is sideways, m
+---@field radius? number of the agent; kept clear of walls and ledges, m
+---@field height? number of the agent, m
+---@field climb? number highest step, m
+---@field slope? number steepest ground, rad
+
+---Finds the ground on which an agent can stand and step, from triangles and boxes.
+---@param options corsac.nav.newSurface.options world and agent
+---@return corsac.Surface surface
+function corsac.nav.newSurface(options) end
 
 ---Sounds in space: sources, groups, a listener.
 corsac.audio = {}

@@ -195,6 +195,51 @@ static void walks_around_a_closed_door(void) {
     TEST_ASSERT_TRUE(core_v3_length(position(agent)) <= 0.1f);
 }
 
+// Across a surface with a wall in the way: arrives, and keeps its distance from the wall.
+static void walks_across_a_surface(void) {
+    enum { SIDE = 40 };
+    static uint8_t blocked[SIDE * SIDE];
+    memset(blocked, 0, sizeof blocked);
+    for (int z = 5; z < 35; z++) {
+        blocked[z * SIDE + 20] = 1; // x from 5 to 5.25 m, z from 1.25 to 8.75 m
+    }
+    nav_mesh mesh = nav_mesh_from_cells(world, SIDE, SIDE, blocked, 0.25f);
+    nav_agent_desc desc = nav_agent_desc_default();
+    desc.position = (core_vec3){2, 0, 6};
+    nav_agent agent = nav_agent_create(world, &desc);
+    core_vec3 goal = {8, 0, 6};
+    TEST_ASSERT_TRUE(nav_agent_go_on_mesh(world, agent, mesh, goal));
+    double length = nav_path_cost(world, nav_agent_path(world, agent));
+    // By the near end of the wall: bends at (5, 8.75) and (5.25, 8.75).
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, hypot(3, 2.75) + 0.25 + hypot(2.75, 2.75), length);
+                              length + 0.25); // by the near end
+                              core_vec3 p;
+                              TEST_ASSERT_TRUE(
+                                  nav_path_point(world, nav_agent_path(world, agent), 1, &p));
+                              TEST_ASSERT_EQUAL_FLOAT(8.875f, p.z); // half a cell off the corner
+                              float time = 0.0f;
+                              while (nav_agent_status(world, agent) == NAV_AGENT_WALKING &&
+                                     time < 30.0f) {
+                                  nav_world_step(world, DT);
+                                  core_vec3 at = position(agent);
+                                  TEST_ASSERT_FALSE(at.x > 5.05f && at.x < 5.2f && at.z > 1.3f &&
+                                                    at.z < 8.7f);
+                                  time += DT;
+                              }
+                              TEST_ASSERT_EQUAL_INT(NAV_AGENT_ARRIVED,
+                                                    nav_agent_status(world, agent));
+                              TEST_ASSERT_TRUE(core_v3_length(core_v3_sub(position(agent), goal)) <=
+                                               desc.arrive);
+                              TEST_ASSERT_TRUE(time <= 1.3f * (float)length / desc.max_speed);
+                              nav_agent_go_on_mesh(world, agent, mesh, (core_vec3){2, 0, 6});
+                              nav_mesh_destroy(world, mesh);
+                              nav_world_step(world, DT);
+                              TEST_ASSERT_EQUAL_INT(NAV_AGENT_STUCK,
+                                                    nav_agent_status(world, agent));
+                              TEST_ASSERT_FALSE(
+                                  nav_agent_go_on_mesh(world, agent, mesh, (core_vec3){2, 0, 6}));
+}
+
 static void driven_agents_are_moved_by_others(void) {
     field(3);
     nav_agent_desc desc = nav_agent_desc_default();
@@ -299,6 +344,7 @@ int main(void) {
     RUN_TEST(stays_near_the_links);
     RUN_TEST(climbs);
     RUN_TEST(walks_around_a_closed_door);
+    RUN_TEST(walks_across_a_surface);
     RUN_TEST(driven_agents_are_moved_by_others);
     RUN_TEST(bad_input);
     RUN_TEST(same_calls_same_state);

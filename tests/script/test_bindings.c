@@ -48,6 +48,7 @@ static const struct {
                 " return corsac.anim.newMachine{states = {{name = 'a', clip = " CLIP "}}}"},
     {"Graph", "local g = corsac.nav.newGraph{} g:add(0, 0, 0) g:add(1, 0, 0) return g"},
     {"Path", "local g = corsac.nav.newGraph{} return corsac.nav.newPath(g, {0, 0, 0}, {1, 0, 0})"},
+    {"Surface", "return corsac.nav.newSurface{boxes = {{size = {9, 1, 9}}}}"},
     {"Agent", "return corsac.nav.newAgent{position = {0, 0, 0}}"},
     {"Animator", "return corsac.anim.newAnimator(" SKELETON ")"},
     {"Sound", "return corsac.audio.newSound('beep.wav')"},
