@@ -212,32 +212,24 @@ static void walks_across_a_surface(void) {
     double length = nav_path_cost(world, nav_agent_path(world, agent));
     // By the near end of the wall: bends at (5, 8.75) and (5.25, 8.75).
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, hypot(3, 2.75) + 0.25 + hypot(2.75, 2.75), length);
-                              length + 0.25); // by the near end
-                              core_vec3 p;
-                              TEST_ASSERT_TRUE(
-                                  nav_path_point(world, nav_agent_path(world, agent), 1, &p));
-                              TEST_ASSERT_EQUAL_FLOAT(8.875f, p.z); // half a cell off the corner
-                              float time = 0.0f;
-                              while (nav_agent_status(world, agent) == NAV_AGENT_WALKING &&
-                                     time < 30.0f) {
-                                  nav_world_step(world, DT);
-                                  core_vec3 at = position(agent);
-                                  TEST_ASSERT_FALSE(at.x > 5.05f && at.x < 5.2f && at.z > 1.3f &&
-                                                    at.z < 8.7f);
-                                  time += DT;
-                              }
-                              TEST_ASSERT_EQUAL_INT(NAV_AGENT_ARRIVED,
-                                                    nav_agent_status(world, agent));
-                              TEST_ASSERT_TRUE(core_v3_length(core_v3_sub(position(agent), goal)) <=
-                                               desc.arrive);
-                              TEST_ASSERT_TRUE(time <= 1.3f * (float)length / desc.max_speed);
-                              nav_agent_go_on_mesh(world, agent, mesh, (core_vec3){2, 0, 6});
-                              nav_mesh_destroy(world, mesh);
-                              nav_world_step(world, DT);
-                              TEST_ASSERT_EQUAL_INT(NAV_AGENT_STUCK,
-                                                    nav_agent_status(world, agent));
-                              TEST_ASSERT_FALSE(
-                                  nav_agent_go_on_mesh(world, agent, mesh, (core_vec3){2, 0, 6}));
+    core_vec3 p;
+    TEST_ASSERT_TRUE(nav_path_point(world, nav_agent_path(world, agent), 1, &p));
+    TEST_ASSERT_EQUAL_FLOAT(8.875f, p.z); // half a cell off the corner
+    float time = 0.0f;
+    while (nav_agent_status(world, agent) == NAV_AGENT_WALKING && time < 30.0f) {
+        nav_world_step(world, DT);
+        core_vec3 at = position(agent);
+        TEST_ASSERT_FALSE(at.x > 5.05f && at.x < 5.2f && at.z > 1.3f && at.z < 8.7f);
+        time += DT;
+    }
+    TEST_ASSERT_EQUAL_INT(NAV_AGENT_ARRIVED, nav_agent_status(world, agent));
+    TEST_ASSERT_TRUE(core_v3_length(core_v3_sub(position(agent), goal)) <= desc.arrive);
+    TEST_ASSERT_TRUE(time <= 1.3f * (float)length / desc.max_speed);
+    nav_agent_go_on_mesh(world, agent, mesh, (core_vec3){2, 0, 6});
+    nav_mesh_destroy(world, mesh);
+    nav_world_step(world, DT);
+    TEST_ASSERT_EQUAL_INT(NAV_AGENT_STUCK, nav_agent_status(world, agent));
+    TEST_ASSERT_FALSE(nav_agent_go_on_mesh(world, agent, mesh, (core_vec3){2, 0, 6}));
 }
 
 static void driven_agents_are_moved_by_others(void) {
