@@ -38,6 +38,7 @@ int audio_world_state(const audio_world *world, const core_columns **out, int ca
 //   hrtf     on | off: binaural filtering for headphones, default off
 //   doppler  factor on velocities, 0..10, default 1
 //   sound_speed  m/s, 1..10000, default 343.3
+//   occlusion  on | off: whether the owner is to look for what is in the way, default off
 bool audio_world_set(audio_world *world, const char *name, const char *value);
 
 // Copies the samples. Null + core_fail for bad data.
@@ -88,6 +89,8 @@ bool audio_source_fade(audio_world *world, audio_source source, float gain, floa
                        bool stop);
 // Share of the sound that something in the way lets through, [0, 1]; 1: nothing is in the way.
 bool audio_source_set_clear(audio_world *world, audio_source source, float clear);
+// The caller's own number, given back with each voice.
+bool audio_source_set_user(audio_world *world, audio_source source, uint64_t user);
 core_vec3 audio_source_position(const audio_world *world, audio_source source);
 
 typedef struct audio_listener {
@@ -96,6 +99,7 @@ typedef struct audio_listener {
 } audio_listener;
 void audio_world_set_listener(audio_world *world, const audio_listener *listener);
 audio_listener audio_world_listener(const audio_world *world);
+bool audio_world_occlusion(const audio_world *world); // the setting
 // Factor on all sources of a group, [0, 16]; the group is made if it is new. False + core_fail for
 // bad names and when there are AUDIO_MAX_GROUPS.
 bool audio_world_set_group(audio_world *world, const char *name, float gain);
@@ -116,6 +120,7 @@ typedef struct audio_voice { // what a device plays, after audio_world_step
     bool loop, flat;
     bool jump; // playback did not come from the last step: it began, or was moved
     float clear;
+    uint64_t user;
 } audio_voice;
 // voice[count], loudest first; valid until the next change of the world.
 const audio_voice *audio_world_voices(const audio_world *world, uint32_t *count);

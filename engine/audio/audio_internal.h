@@ -36,6 +36,7 @@ enum {
     X(float, cone_gain, CORE_COLUMN_STATE)                                                         \
     X(float, clear, 0)                                                                             \
     X(double, frame, CORE_COLUMN_STATE) /* of the sound, where playback is */                      \
+    X(uint64_t, user, CORE_COLUMN_STATE)                                                           \
     X(core_handle, sound, CORE_COLUMN_STATE)                                                       \
     X(uint32_t, group, CORE_COLUMN_STATE)                                                          \
     X(uint32_t, flags, CORE_COLUMN_STATE)
@@ -63,7 +64,7 @@ struct audio_world {
     uint32_t groups;
     uint32_t voices; // most at once
     float volume, doppler, sound_speed;
-    bool hrtf;
+    bool hrtf, occlusion;
     size_t sample_bytes;
     audio_voice voice[AUDIO_MAX_VOICES];
     uint32_t voice_count;

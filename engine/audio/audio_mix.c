@@ -89,7 +89,8 @@ static audio_voice hear(const audio_world *w, uint32_t row) {
                      .loop = (s->flags[row] & AUDIO_LOOP) != 0,
                      .flat = (s->flags[row] & AUDIO_FLAT) != 0,
                      .jump = (s->flags[row] & AUDIO_JUMP) != 0,
-                     .clear = s->clear[row]};
+                     .clear = s->clear[row],
+                     .user = s->user[row]};
     if (v.flat) {
         return v;
     }

@@ -84,7 +84,8 @@ static bool number_setting(const char *name, const char *value, double low, doub
 }
 
 bool audio_world_set(audio_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"voices", "volume", "hrtf", "doppler", "sound_speed"};
+    static const char *const names[] = {"voices",  "volume",      "hrtf",
+                                        "doppler", "sound_speed", "occlusion"};
     float number;
     if (strcmp(name, "voices") == 0) {
         if (!number_setting(name, value, 1, AUDIO_MAX_VOICES, &number)) {
@@ -93,10 +94,13 @@ bool audio_world_set(audio_world *w, const char *name, const char *value) {
         w->voices = (uint32_t)number;
         return true;
     }
-    if (strcmp(name, "hrtf") == 0) {
-        w->hrtf = strcmp(value, "on") == 0;
-        return w->hrtf || strcmp(value, "off") == 0 ||
-               core_fail("audio setting hrtf is '%s', expected on or off", value);
+    bool *toggle = strcmp(name, "hrtf") == 0        ? &w->hrtf
+                   : strcmp(name, "occlusion") == 0 ? &w->occlusion
+                                                    : NULL;
+    if (toggle) {
+        *toggle = strcmp(value, "on") == 0;
+        return *toggle || strcmp(value, "off") == 0 ||
+               core_fail("audio setting %s is '%s', expected on or off", name, value);
     }
     if (strcmp(name, "volume") == 0) {
         return number_setting(name, value, 0, 4, &w->volume);
@@ -165,6 +169,8 @@ void audio_world_set_listener(audio_world *w, const audio_listener *listener) {
     w->listener = *listener;
     w->listener.rotation = core_quat_normalize(listener->rotation);
 }
+
+bool audio_world_occlusion(const audio_world *w) { return w->occlusion; }
 
 audio_listener audio_world_listener(const audio_world *w) { return w->listener; }
 
@@ -432,6 +438,15 @@ bool audio_source_set_clear(audio_world *w, audio_source source, float clear) {
         return false;
     }
     w->source.clear[row] = clear;
+    return true;
+}
+
+bool audio_source_set_user(audio_world *w, audio_source source, uint64_t user) {
+    uint32_t row = source_row(w, source);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    w->source.user[row] = user;
     return true;
 }
 

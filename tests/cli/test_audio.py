@@ -81,6 +81,33 @@ class Audio(SceneCase):
         self.assertGreater(wav.louder(left, right, 18000, 31000), 20)
         self.assertLess(max(map(abs, left[36000:])), 1e-6)
 
+    def test_a_wall_muffles_what_is_behind_it(self):
+        text = """
+            function corsac.conf(t) t.audio = { occlusion = "on" } end
+            local wall
+            function corsac.load()
+              corsac.audio.setListener{ position = { 0, 0, 0 } }
+              local radio = corsac.scene.spawn{ position = { 0, 0, -4 },
+                body = { type = "static", shape = "box", size = { 1, 1, 1 } } }
+              corsac.audio.newSource{ sound = corsac.audio.newSound("sounds/hum.wav"), loop = true, entity = radio }
+            end
+            function corsac.fixed()
+              if corsac.getStep() == 60 then
+                wall = corsac.scene.spawn{ position = { 0, 0, -2 },
+                  body = { type = "static", shape = "box", size = { 4, 4, 0.2 } } }
+              elseif corsac.getStep() == 180 then
+                wall:destroy()
+              end
+            end"""
+        (_, left, _), _, _ = self.capture(text, "--steps", 300)
+        free, behind, again = (left[s * 800:(s + 1) * 800 + 24000] for s in (20, 120, 240))
+        # The hum breathes once a second: the same second of it is compared.
+        muffled = wav.louder(behind, free, 0, 24000)
+        self.assertTrue(-30 < muffled < -9, muffled)
+        self.assertLess(abs(wav.louder(again, free, 0, 24000)), 2)
+        (_, open_left, _), _, _ = self.capture(text, "--steps", 300, "--set", "audio.occlusion=off")
+        self.assertLess(abs(wav.louder(open_left[120 * 800:], open_left[0 * 800:], 0, 24000)), 2)
+
     def test_settings_and_errors(self):
         self.assert_exit(self.run_scene(PASSING, "--set", "audio.voice=3"), 2, "did you mean voices")
         self.assert_exit(self.run_scene(PASSING.replace("hum.wav", "hmu.wav")), 1, "hum.wav")
