@@ -58,6 +58,10 @@ asset_model *asset_model_decode(const void *bytes, size_t size, const char *path
 asset_model *asset_model_load(core_vfs *vfs, const char *path);
 char *asset_model_encode(const asset_model *model, size_t *size); // paths are written as file names
 
+// Converts a model of any format (real path) into a folder of engine files named after it, through
+// libcorsac-convert.so. False + core_fail when that is not installed or the file cannot be read.
+bool asset_import(const char *source, const char *out_dir);
+
 // ---- images and sounds ----
 // PNG, JPEG, TGA, BMP, HDR through stb_image. CORE_IMAGE_RGBA32F decodes to linear floats.
 core_image_data *asset_image_decode(const void *bytes, size_t size, const char *path,

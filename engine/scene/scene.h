@@ -77,6 +77,8 @@ int scene_layer(scene *s, const char *name);
 const char *scene_layer_name(const scene *s, uint32_t layer); // "" when it has none
 
 // ---- models ----
+// Any other model file (.glb, .fbx, ...) is first converted into the user's cache by
+// libcorsac-convert.so, where that is installed.
 // Reads a .cmodel and what it names (meshes, materials, skeleton, clips) into the rooms; the same
 // path gives the same model again. Null + core_fail when any part is missing or bad: then nothing
 // stays loaded.

@@ -1,7 +1,11 @@
 // Models: the parts of a .cmodel loaded into the rooms, shared by every entity that shows them.
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "asset/asset.h"
+#include "core/hash.h"
 #include "core/nearest.h"
 #include "scene/scene_internal.h"
 
@@ -156,6 +160,55 @@ static bool open_models(scene *s) {
     return model_columns_init(&s->models->columns, "scene.models", MODELS_MAX);
 }
 
+static bool is_model_file(const char *path) {
+    size_t n = strlen(path);
+    return n > 7 && strcmp(path + n - 7, ".cmodel") == 0;
+}
+
+// "walk cycle.v2.glb" -> "walk_cycle_v2", the name that the converter gives its files.
+static void clean_stem(const char *path, char out[CORE_NAME_MAX]) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    size_t length = dot && dot != name ? (size_t)(dot - name) : strlen(name), n = 0;
+    for (size_t i = 0; i < length && n < 63; i++) {
+        char c = name[i];
+        bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                     c == '-' || c == '_';
+        if (plain || (n > 0 && out[n - 1] != '_')) {
+            out[n++] = plain ? c : '_';
+        }
+    }
+    while (n > 1 && out[n - 1] == '_') {
+        n--;
+    }
+    out[n] = 0;
+}
+
+// Any other model file is converted into the user's cache, by path and time stamp, and mounted.
+static bool import_model(scene *s, const char *path, char converted[CORE_NAME_MAX]) {
+    char source[4096], folder[4096], at[64], stem[CORE_NAME_MAX];
+    if (!core_vfs_resolve(s->vfs, path, source, sizeof source)) {
+        return core_fail("%s: no such model file", path);
+    }
+    uint64_t key = core_hash_mix(core_hash_string(source), core_vfs_stamp(s->vfs, path));
+    const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    bool own = cache && cache[0] == '/';
+    if (!own && !home) {
+        return core_fail("%s: importing needs a cache: set XDG_CACHE_HOME or HOME", path);
+    }
+    snprintf(folder, sizeof folder, "%s%s/corsac/import/%016llx", own ? cache : home,
+             own ? "" : "/.cache", (unsigned long long)key);
+    snprintf(at, sizeof at, "import/%016llx", (unsigned long long)key);
+    clean_stem(path, stem);
+    snprintf(converted, CORE_NAME_MAX, "%s/%s.cmodel", at, stem);
+    char file[4096 + CORE_NAME_MAX];
+    snprintf(file, sizeof file, "%s/%s.cmodel", folder, stem);
+    if (access(file, R_OK) != 0 && !asset_import(source, folder)) {
+        return false;
+    }
+    return core_vfs_mount(s->vfs, folder, at, false);
+}
+
 scene_model scene_model_load(scene *s, const char *path) {
     if (strlen(path) >= CORE_NAME_MAX || !s->vfs) {
         core_fail("%.64s: model: its path is too long, or the scene has no files", path);
@@ -165,7 +218,11 @@ scene_model scene_model_load(scene *s, const char *path) {
     if (!core_handle_is_null(known) || !open_models(s)) {
         return known;
     }
-    asset_model *model = asset_model_load(s->vfs, path);
+    char converted[CORE_NAME_MAX];
+    if (!is_model_file(path) && !import_model(s, path, converted)) {
+        return CORE_NULL_HANDLE;
+    }
+    asset_model *model = asset_model_load(s->vfs, is_model_file(path) ? path : converted);
     if (!model) {
         return CORE_NULL_HANDLE;
     }

@@ -97,6 +97,23 @@ class Files(Converted):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertLess(json.loads(run.stdout)["accuracy"]["anim_error_max_m_peak"], 1e-3)
 
+    def test_import_on_demand(self):
+        scene = os.path.join(self.folder.name, "scene")
+        os.makedirs(scene)
+        with open(model("fox.glb"), "rb") as f, open(os.path.join(scene, "a fox.glb"), "wb") as g:
+            g.write(f.read())
+        with open(os.path.join(scene, "main.lua"), "w") as f:
+            f.write("function corsac.load() local m = corsac.anim.loadModel('a fox.glb')\n"
+                    "corsac.scene.spawn{ model = m, clip = m:getClip('Walk') } end\n"
+                    "corsac.expect('counts.skeletons', '==', 1)\n")
+        env = dict(os.environ, XDG_CACHE_HOME=os.path.join(self.folder.name, "cache"))
+        for _ in range(2):  # converted, then from the cache
+            run = subprocess.run([CORSAC, "run", scene, "--headless", "--steps", "5"], env=env,
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stderr)
+        imported = os.path.join(self.folder.name, "cache", "corsac", "import")
+        self.assertEqual(len(os.listdir(imported)), 1)
+
     def test_usage(self):
         self.assertEqual(convert().returncode, 2)
         self.assertEqual(convert("a.glb", self.out, "--scale", "-1").returncode, 2)

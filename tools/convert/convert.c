@@ -219,3 +219,7 @@ int corsac_convert(const convert_options *o) {
     free_model(&m);
     return good ? 0 : 1;
 }
+
+int corsac_convert_file(const char *in, const char *out_dir) {
+    return corsac_convert(&(convert_options){.in = in, .out_dir = out_dir, .quiet = true});
+}

@@ -20,6 +20,7 @@ typedef struct convert_options {
 } convert_options;
 
 // Exit code: 0 converted, 1 the file cannot be converted, 2 missing or unwritable file.
+__attribute__((visibility("default"))) int corsac_convert_file(const char *in, const char *out_dir);
 __attribute__((visibility("default"))) int corsac_convert(const convert_options *options);
 
 // ---- matrices, double, row-major, columns are the axes (v' = M v) ----
