@@ -50,7 +50,9 @@ static void write_object(json_writer *w, int index, const char *key) {
     size_t end = strlen(w->path);
     lua_pushcfunction(L, script_order_keys);
     lua_pushvalue(L, index);
-    lua_call(L, 1, 2);
+    if (lua_pcall(L, 1, 2, 0) != 0) {
+        refuse(w, "has a table or function as key");
+    }
     int keys = lua_gettop(L) - 1, count = (int)lua_tonumber(L, -1);
     for (int i = 1; i <= count; i++) {
         lua_rawgeti(L, keys, i);
