@@ -52,6 +52,7 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //   debug        off | normals | depth | lights (in each cell: blue none, red 32) | clusters |
 //                overdraw
 //   prepass      on | off: depth first, so that no hidden fragment is shaded
+//   levels       on | off: coarser built-in meshes where half a pixel does not tell
 //   culling      on | off: skip what is outside the view
 //   instancing   on | off (off: one draw call per instance, the baseline of the draw counts)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);

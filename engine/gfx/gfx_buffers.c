@@ -95,6 +95,7 @@ static void upload(gfx_geometry *g, const gfx_world *world, bool skinned, uint32
         }
         core_handle h = core_columns_handle(&world->meshes.set, i);
         g->place[h.index] = (gfx_mesh_place){.generation = h.generation,
+                                             .number = h.index,
                                              .first_index = *index,
                                              .index_count = m->index_count,
                                              .base_vertex = *vertex,

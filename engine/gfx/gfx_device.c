@@ -151,8 +151,8 @@ void gfx_device_destroy(gfx_device *device) {
     glDeleteTextures(1, &d->dfg_texture);
     glDeleteVertexArrays(1, &d->empty_vao);
     release_targets(d);
-    gfx_growing *const arrays[] = {&d->visible, &d->keys,     &d->scratch,
-                                   &d->rows,    &d->commands, &d->batches};
+    gfx_growing *const arrays[] = {&d->places, &d->visible,  &d->keys,   &d->scratch,
+                                   &d->rows,   &d->commands, &d->batches};
     for (size_t i = 0; i < CORE_COUNT_OF(arrays); ++i) {
         gfx_growing_release(arrays[i]);
     }

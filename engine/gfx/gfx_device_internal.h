@@ -26,6 +26,7 @@ void gfx_stream_release(gfx_stream *stream);
 // Where a mesh lies in the device's vertex and index buffers.
 typedef struct gfx_mesh_place {
     uint32_t generation; // of the mesh's handle; 0: not there
+    uint32_t number;     // the handle's index
     uint32_t first_index, index_count, base_vertex;
     bool skinned;
 } gfx_mesh_place;
@@ -75,6 +76,7 @@ void gfx_materials_release(gfx_material_cache *cache);
 
 typedef struct gfx_sort_key {
     uint64_t key;
+    const gfx_mesh_place *place;
     uint32_t row, material; // 0: the default, else 1 + its row
 } gfx_sort_key;
 // Sorts by key, equal keys in the order they stand in. scratch holds as many.
@@ -96,7 +98,7 @@ typedef struct gfx_draw_list { // one view's part of the frame's batches: opaque
 } gfx_draw_list;
 
 // A frame: begin, one list a view, upload once, submit batches with `features` added to their own.
-void gfx_draws_begin(gfx_device *device);
+void gfx_draws_begin(gfx_device *device, const gfx_world *world, const gfx_view *view);
 void gfx_draws_add_view(gfx_device *device, const gfx_world *world, const gfx_view *view,
                         gfx_draw_list *list);
 void gfx_draws_upload(gfx_device *device, const gfx_world *world);
@@ -226,6 +228,8 @@ struct gfx_device {
     GLuint timer[GFX_FRAMES];
     uint32_t frame; // turn of the streams
     gfx_quads quads;
+    gfx_growing places; // of each row's mesh at its level of detail, NULL: not drawn
+    uint64_t levels_hash;
     gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists
 };
 

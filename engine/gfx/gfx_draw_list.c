@@ -3,6 +3,8 @@
 #include "gfx/gfx_cull.h"
 #include "gfx/gfx_device_internal.h"
 
+#include "core/hash.h"
+
 #include <string.h>
 
 // LSD radix sort on bytes; passes whose byte is the same everywhere are skipped.
@@ -44,7 +46,38 @@ static const gfx_mesh_place *place_of(const gfx_geometry *g, gfx_mesh mesh) {
     return &g->place[mesh.index];
 }
 
-void gfx_draws_begin(gfx_device *d) { d->rows.count = d->commands.count = d->batches.count = 0; }
+// The coarsest level of a mesh whose surface lies within half a pixel of the true one.
+static const gfx_mesh_place *level_of(const gfx_device *d, const gfx_world *world, gfx_mesh mesh,
+                                      float radius_pixels) {
+    uint32_t row = core_columns_row(&world->meshes.set, mesh);
+    while (row != CORE_NO_ROW && world->settings.levels) {
+        gfx_mesh coarser = world->meshes.store[row].coarser;
+        uint32_t next = core_columns_row(&world->meshes.set, coarser);
+        if (next == CORE_NO_ROW || world->meshes.store[next].deviation * radius_pixels > 0.5f) {
+            break;
+        }
+        mesh = coarser;
+        row = next;
+    }
+    return place_of(&d->geometry, mesh);
+}
+
+// Levels are chosen by the camera alone: shadow maps must hold the surface that receives them.
+void gfx_draws_begin(gfx_device *d, const gfx_world *world, const gfx_view *view) {
+    const gfx_instances *s = &world->instances;
+    uint32_t n = core_columns_count(&s->set);
+    float scale = 0.5f * (float)d->height / view->tan_y;
+    d->rows.count = d->commands.count = d->batches.count = d->places.count = 0;
+    const gfx_mesh_place **place = gfx_grow(&d->places, sizeof *place, n);
+    d->levels_hash = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        core_vec3 to = core_v3_sub(core_v3(s->cx[i], s->cy[i], s->cz[i]), view->position);
+        float distance = view->orthographic ? 1.0f : core_v3_length(to) - s->cr[i];
+        float pixels = s->cr[i] * scale / CORE_MAX(distance, view->near_plane);
+        place[i] = level_of(d, world, s->mesh[i], pixels);
+        d->levels_hash = core_hash_mix(d->levels_hash, place[i] ? place[i]->first_index : 0);
+    }
+}
 
 static const gfx_material_state *material_state(const gfx_device *d, uint32_t material) {
     return (const gfx_material_state *)d->materials.state.data + material;
@@ -53,8 +86,7 @@ static const gfx_material_state *material_state(const gfx_device *d, uint32_t ma
 // What a draw call needs of an instance besides its mesh.
 static gfx_batch state_of(const gfx_device *d, const gfx_world *world, const gfx_sort_key *key) {
     const gfx_material_state *m = material_state(d, key->material);
-    const gfx_mesh_place *place = place_of(&d->geometry, world->instances.mesh[key->row]);
-    bool skinned = place->skinned && world->instances.palette[key->row];
+    bool skinned = key->place->skinned && world->instances.palette[key->row];
     return (gfx_batch){.features = m->features | (skinned ? GFX_FEATURE_SKINNING : 0),
                        .material = m->features & GFX_FEATURE_TEXTURES ? key->material : 0,
                        .double_sided = m->double_sided};
@@ -68,8 +100,9 @@ static bool same_state(const gfx_batch *a, const gfx_batch *b) {
 // Opaque: program and cull state, textures, mesh; a mesh's instances keep the order of their rows.
 // Blended ones come after, from far to near: bits of a positive float order as the float does.
 static uint64_t sort_key(const gfx_batch *state, const gfx_world *world, const gfx_view *view,
-                         uint32_t row) {
+                         const gfx_sort_key *of) {
     const gfx_instances *s = &world->instances;
+    uint32_t row = of->row;
     if (state->features & GFX_FEATURE_BLEND) {
         core_vec3 d = core_v3_sub(core_v3(s->cx[row], s->cy[row], s->cz[row]), view->position);
         float d2 = core_v3_dot(d, d);
@@ -79,7 +112,7 @@ static uint64_t sort_key(const gfx_batch *state, const gfx_world *world, const g
     }
     uint64_t program = (uint64_t)(state->features << 1 | state->double_sided) & 0x7fff;
     return program << 48 | (uint64_t)(state->material & 0xffffff) << 24 |
-           (s->mesh[row].index & 0xffffff);
+           (of->place->number & 0xffffff);
 }
 
 // Keys of the rows that are in the view and have a mesh.
@@ -98,13 +131,15 @@ static uint32_t make_keys(gfx_device *d, const gfx_world *world, const gfx_view 
     gfx_sort_key *keys = gfx_grow(&d->keys, sizeof *keys, count);
     gfx_sort_key *scratch = gfx_grow(&d->scratch, sizeof *scratch, count);
     for (uint32_t i = 0; i < count; ++i) {
-        if (place_of(&d->geometry, s->mesh[rows[i]])) {
+        const gfx_mesh_place *place = ((const gfx_mesh_place **)d->places.data)[rows[i]];
+        if (place) {
             uint32_t material = core_columns_row(&world->materials.set, s->material[rows[i]]);
             gfx_sort_key *k = &keys[kept++];
             *k = (gfx_sort_key){.row = rows[i],
+                                .place = place,
                                 .material = material == CORE_NO_ROW ? 0 : material + 1};
             gfx_batch state = state_of(d, world, k);
-            k->key = sort_key(&state, world, view, k->row);
+            k->key = sort_key(&state, world, view, k);
         }
     }
     gfx_sort_keys(keys, scratch, kept);
@@ -137,7 +172,7 @@ void gfx_draws_add_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     const gfx_mesh_place *last = NULL;
     *list = (gfx_draw_list){.first_batch = (uint32_t)d->batches.count};
     for (uint32_t i = 0; i < count; ++i) {
-        const gfx_mesh_place *place = place_of(&d->geometry, world->instances.mesh[keys[i].row]);
+        const gfx_mesh_place *place = keys[i].place;
         gfx_batch state = state_of(d, world, &keys[i]);
         uint32_t batches = list->batches;
         gfx_batch *batch = batch_for(d, list, &state);

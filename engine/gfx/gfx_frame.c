@@ -186,7 +186,7 @@ static bool draw_world(gfx_device *d, gfx_world *world) {
     bool ok = gfx_geometry_update(&d->geometry, world);
     if (ok) {
         gfx_materials_update(d, world);
-        gfx_draws_begin(d);
+        gfx_draws_begin(d, world, &view);
         gfx_draws_add_view(d, world, &view, &list);
         gfx_shadows_plan(d, world, &view);
         gfx_draws_upload(d, world);

@@ -70,8 +70,10 @@ typedef struct gfx_mesh_store {
     uint32_t *index;
     core_vec3 center; // bounding sphere, model space
     float radius;
-    uint32_t bones; // 1 + largest joint, 0 without skin
-    int builtin;    // 1 + number of the built-in mesh, 0 for others
+    uint32_t bones;   // 1 + largest joint, 0 without skin
+    int builtin;      // 1 + number of the built-in mesh, 0 for others
+    gfx_mesh coarser; // next level of detail, null: none
+    float deviation;  // of this level from the true surface, part of the radius
 } gfx_mesh_store;
 
 #define GFX_MESH_COLUMNS(X) X(gfx_mesh_store, store, 0)
@@ -108,10 +110,10 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     float first_slice;         // m
     float cell_cap;            // lights, 0: none
     float exposure;
-    int tonemap;                      // GFX_TONEMAP_*
-    int instancing, culling, prepass; // switches
-    int debug;                        // GFX_DEBUG_*
-    int shadows;                      // GFX_SHADOWS_*
+    int tonemap;                              // GFX_TONEMAP_*
+    int instancing, culling, prepass, levels; // switches
+    int debug;                                // GFX_DEBUG_*
+    int shadows;                              // GFX_SHADOWS_*
     float shadow_size, shadow_distance, cascades;
 } gfx_settings;
 

@@ -180,13 +180,16 @@ bool gfx_mesh_destroy(gfx_world *world, gfx_mesh mesh) {
 
 // ---- built-in shapes: surfaces of revolution round Y and quads, written into fixed arrays ----
 
-enum { SEGMENTS = 40, MAX_VERTICES = 2048, MAX_INDICES = 12288 };
+// Segments of the built-in round shapes, from fine to coarse: multiples of four.
+enum { LEVELS = 3, MAX_SEGMENTS = 40, MAX_VERTICES = 2048, MAX_INDICES = 12288 };
+static const int level_segments[LEVELS] = {MAX_SEGMENTS, 20, 12};
 
 typedef struct shape {
     float position[MAX_VERTICES * 3], normal[MAX_VERTICES * 3], tangent[MAX_VERTICES * 4];
     float uv[MAX_VERTICES * 2];
     uint32_t index[MAX_INDICES];
     uint32_t vertices, indices;
+    int segments;
 } shape;
 
 static uint32_t shape_vertex(shape *s, core_vec3 p, core_vec3 n, core_vec3 t, float u, float v) {
@@ -239,9 +242,10 @@ typedef struct ring {
 static void shape_revolve(shape *s, const ring *rings, int count) {
     uint32_t first = s->vertices;
     for (int k = 0; k < count; ++k) {
-        for (int i = 0; i <= SEGMENTS; ++i) {
-            float u = (float)i / SEGMENTS, sine, cosine;
-            core_sincosf(2.0f * CORE_PI_F * (float)(i % SEGMENTS) / SEGMENTS, &sine, &cosine);
+        for (int i = 0; i <= s->segments; ++i) {
+            float u = (float)i / (float)s->segments, sine, cosine;
+            float turn = (float)(i % s->segments) / (float)s->segments;
+            core_sincosf(2.0f * CORE_PI_F * turn, &sine, &cosine);
             const ring *r = &rings[k];
             shape_vertex(s, core_v3(r->radius * cosine, r->y, -r->radius * sine),
                          core_v3(r->nr * cosine, r->ny, -r->nr * sine),
@@ -249,9 +253,9 @@ static void shape_revolve(shape *s, const ring *rings, int count) {
         }
     }
     for (int k = 0; k + 1 < count; ++k) {
-        uint32_t row = first + (uint32_t)k * (SEGMENTS + 1);
-        for (uint32_t i = row; i < row + SEGMENTS; ++i) {
-            uint32_t above = i + SEGMENTS + 1;
+        uint32_t segments = (uint32_t)s->segments, row = first + (uint32_t)k * (segments + 1);
+        for (uint32_t i = row; i < row + segments; ++i) {
+            uint32_t above = i + segments + 1;
             if (rings[k].radius > 0.0f) {
                 shape_triangle(s, i, i + 1, above);
             }
@@ -264,19 +268,19 @@ static void shape_revolve(shape *s, const ring *rings, int count) {
 
 // Ball of radius 0.5 cut at the equator and pulled apart by `segment` (0: a sphere).
 static void shape_capsule(shape *s, float segment) {
-    enum { HALF = SEGMENTS / 4 };
-    ring rings[2 * HALF + 2];
+    const int half_rings = s->segments / 4;
+    ring rings[MAX_SEGMENTS / 2 + 2];
     int n = 0;
-    for (int k = 0; k <= 2 * HALF; ++k) {
+    for (int k = 0; k <= 2 * half_rings; ++k) {
         float sine, cosine, half = 0.5f * segment;
-        core_sincosf(CORE_PI_F * ((float)k / (2 * HALF) - 0.5f), &sine, &cosine);
-        cosine = k == 0 || k == 2 * HALF ? 0.0f : cosine;
+        core_sincosf(CORE_PI_F * ((float)k / (float)(2 * half_rings) - 0.5f), &sine, &cosine);
+        cosine = k == 0 || k == 2 * half_rings ? 0.0f : cosine;
         ring r = {0.5f * cosine, 0.5f * sine, cosine, sine, 0.0f};
-        if (k <= HALF) {
+        if (k <= half_rings) {
             rings[n] = r;
             rings[n++].y -= half;
         }
-        if (k > HALF || (k == HALF && segment > 0.0f)) {
+        if (k > half_rings || (k == half_rings && segment > 0.0f)) {
             rings[n] = r;
             rings[n++].y += half;
         }
@@ -316,6 +320,30 @@ static void shape_build(shape *s, int which) {
     }
 }
 
+static gfx_mesh make_level(gfx_world *world, int which, int level, gfx_mesh coarser) {
+    shape *s = core_alloc(sizeof *s);
+    s->segments = level_segments[level];
+    shape_build(s, which);
+    core_mesh_data data = {.vertex_count = s->vertices,
+                           .index_count = s->indices,
+                           .position = s->position,
+                           .normal = s->normal,
+                           .tangent = s->tangent,
+                           .uv = s->uv,
+                           .index = s->index};
+    gfx_mesh mesh = gfx_mesh_create(world, &data);
+    uint32_t row = core_columns_row(&world->meshes.set, mesh);
+    if (row != CORE_NO_ROW) {
+        gfx_mesh_store *store = &world->meshes.store[row];
+        store->builtin = which + 1;
+        store->coarser = coarser;
+        // Sagitta of a chord, round the axis and along the meridian.
+        store->deviation = 2.0f * (1.0f - core_cosf(CORE_PI_F / (float)s->segments));
+    }
+    core_free(s);
+    return mesh;
+}
+
 gfx_mesh gfx_mesh_builtin(gfx_world *world, const char *name) {
     static const char *const names[GFX_BUILTIN_MESHES] = {"box", "sphere", "capsule", "cylinder",
                                                           "plane"};
@@ -327,20 +355,12 @@ gfx_mesh gfx_mesh_builtin(gfx_world *world, const char *name) {
     if (!core_handle_is_null(world->builtin[which])) {
         return world->builtin[which];
     }
-    shape *s = core_alloc(sizeof *s);
-    shape_build(s, which);
-    core_mesh_data data = {.vertex_count = s->vertices,
-                           .index_count = s->indices,
-                           .position = s->position,
-                           .normal = s->normal,
-                           .tangent = s->tangent,
-                           .uv = s->uv,
-                           .index = s->index};
-    world->builtin[which] = gfx_mesh_create(world, &data);
-    core_free(s);
-    uint32_t row = core_columns_row(&world->meshes.set, world->builtin[which]);
-    if (row != CORE_NO_ROW) {
-        world->meshes.store[row].builtin = which + 1;
+    // Coarse levels first, so that each finer one can name the next coarser.
+    bool round = which >= 1 && which <= 3;
+    gfx_mesh mesh = CORE_NULL_HANDLE;
+    for (int level = round ? LEVELS - 1 : 0; level >= 0; --level) {
+        mesh = make_level(world, which, level, mesh);
     }
-    return world->builtin[which];
+    world->builtin[which] = mesh;
+    return mesh;
 }

@@ -95,6 +95,7 @@ static const setting table[] = {
      0,
      0},
     {"prepass", offsetof(gfx_settings, prepass), {"off", "on"}, 0, 0},
+    {"levels", offsetof(gfx_settings, levels), {"off", "on"}, 0, 0},
     {"culling", offsetof(gfx_settings, culling), {"off", "on"}, 0, 0},
 };
 

@@ -212,6 +212,7 @@ void gfx_shadows_plan(gfx_device *d, const gfx_world *world, const gfx_view *vie
     for (uint32_t i = 0; i < s->count; ++i) {
         gfx_shadow_view *v = &s->view[i];
         uint64_t casters = core_hash_mix(world->id, world->instance_version + world->mesh_version);
+        casters = core_hash_mix(casters, d->levels_hash);
         v->key = core_hash(&v->view.view_projection, sizeof v->view.view_projection, casters) | 1;
         v->current = s->drawn[i] == v->key;
         if (!v->current) {

@@ -39,6 +39,7 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
                                  .instancing = 1,
                                  .culling = 1,
                                  .prepass = 1,
+                                 .levels = 1,
                                  .shadows = GFX_SHADOWS_PCF,
                                  .shadow_size = 1024.0f,
                                  .shadow_distance = 80.0f,

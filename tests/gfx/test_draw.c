@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void setUp(void) {}
@@ -169,6 +170,30 @@ static void test_prepass_changes_nothing(void) {
     gfx_fixture_close(&f);
 }
 
+// Coarser meshes far away: fewer triangles, and a picture that differs at few silhouettes.
+static void test_levels_of_detail(void) {
+    gfx_fixture f = gfx_fixture_open(192, 128, true);
+    scatter(&f, 200);
+    gfx_look(f.world, core_v3(0, 0, 34), core_v3(0, 0, 0));
+    uint8_t *a = gfx_fixture_ldr(&f);
+    uint32_t coarse = gfx_world_stats(f.world).triangles;
+    TEST_ASSERT_TRUE(gfx_world_set(f.world, "levels", "off"));
+    uint8_t *b = gfx_fixture_ldr(&f);
+    uint32_t fine = gfx_world_stats(f.world).triangles;
+    uint32_t differ = 0;
+    for (int i = 0; i < 192 * 128; ++i) {
+        int d = a[4 * i] - b[4 * i];
+        differ += d > 12 || d < -12;
+    }
+    printf("levels: %u triangles of %u, %u pixels of %d differ by more than 12 of 255\n", coarse,
+           fine, differ, 192 * 128);
+    TEST_ASSERT_TRUE(coarse * 4 < fine);
+    TEST_ASSERT_LESS_THAN(192 * 128 / 100, differ);
+    core_free(a);
+    core_free(b);
+    gfx_fixture_close(&f);
+}
+
 // Whatever is culled was not in the picture: the same things as one mesh, which is never culled in
 // part, leave the same depth.
 static void test_culling_loses_nothing(void) {
@@ -302,6 +327,7 @@ int main(void) {
     RUN_TEST(test_skinning);
     RUN_TEST(test_instancing_equals_single_draws);
     RUN_TEST(test_prepass_changes_nothing);
+    RUN_TEST(test_levels_of_detail);
     RUN_TEST(test_culling_loses_nothing);
     RUN_TEST(test_culling_on_every_set);
     RUN_TEST(test_depth);
