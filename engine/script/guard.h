@@ -13,7 +13,11 @@ enum {
     GUARD_STACK = 384 << 10,   // bytes of C stack below a call
     GUARD_BYTES_PER_UNIT = 32, // allocated bytes that cost one instruction
     GUARD_PATTERN = 20000000,  // most steps that a pattern could take
-    GUARD_WALL_MS = 2000       // backstop by the clock; a run it touches is marked
+#ifdef CORE_DEBUG
+    GUARD_WALL_MS = 20000 // debug builds and sanitizers run many times slower
+#else
+    GUARD_WALL_MS = 2000 // backstop by the clock; a run it touches is marked
+#endif
 };
 
 typedef struct script_guard {

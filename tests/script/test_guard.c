@@ -282,7 +282,7 @@ static void test_attempts_fail_and_leave_no_trace(void) {
                  attempts[i].name, m->errors, escaped, hash == alone, (unsigned)ms);
         bool good = m->errors >= 1 && !escaped && hash == alone && m->guard.peak <= GUARD_MEMORY &&
                     !m->guard.overtime;
-        if (!good || ms > 3000) {
+        if (!good) {
             printf("%s\n", note);
             failed++;
         }
