@@ -303,6 +303,9 @@ uint32_t anim_instance_transitions(const anim_world *world, anim_instance instan
                                    uint32_t capacity);
 // Instances that are not visible keep their state machine running and are not posed.
 bool anim_instance_set_visible(anim_world *world, anim_instance instance, bool visible);
+// Level of detail: the pose is computed at every n-th anim_world_pose only, 1..64; between them the
+// palette stays. Instances take turns. anim_world_error_max then shows what it costs in metres.
+bool anim_instance_set_rate(anim_world *world, anim_instance instance, uint32_t every);
 // Displacement of the root in the last update, in the instance's own frame.
 bool anim_instance_root_motion(const anim_world *world, anim_instance instance, core_vec3 *out);
 

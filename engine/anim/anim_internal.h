@@ -139,6 +139,8 @@ enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
     X(uint32_t, layered, CORE_COLUMN_STATE)  /* how many layers there are */                       \
     X(anim_goals, goals, CORE_COLUMN_STATE)                                                        \
     X(uint32_t, goal_count, CORE_COLUMN_STATE) /* with a weight */                                 \
+    X(uint32_t, rate, CORE_COLUMN_STATE)       /* posed every rate-th time; 0: every */            \
+    X(uint32_t, age, CORE_COLUMN_STATE)        /* poses asked for */                               \
     X(float, speed, CORE_COLUMN_STATE)                                                             \
     X(float, root_x, CORE_COLUMN_STATE)                                                            \
     X(float, root_y, CORE_COLUMN_STATE)                                                            \
@@ -206,6 +208,8 @@ void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c
                               float *out);
 // Palettes of all visible instances, by kernels (batch.c).
 void anim_batch_pose(anim_world *w);
+// Whether the row is to be posed now; counts the asking.
+bool anim_pose_due(anim_world *w, uint32_t row);
 // One instance by itself: the scalar reference.
 void anim_pose_plain(anim_world *w, uint32_t row, core_arena *arena);
 float *anim_palette_of(const anim_world *w, uint32_t row);

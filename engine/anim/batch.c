@@ -90,7 +90,7 @@ static uint32_t find_group(batch *b, const group *g) {
 static void sort_rows(batch *b, uint32_t rows) {
     for (uint32_t row = 0; row < rows; row++) {
         b->group_of[row] = UNSEEN;
-        if (b->w->instances.flags[row] & ANIM_HIDDEN) {
+        if (!anim_pose_due(b->w, row)) {
             continue;
         }
         group g = describe(b->w, row);

@@ -142,11 +142,19 @@ void anim_pose_plain(anim_world *w, uint32_t row, core_arena *arena) {
     core_arena_rewind(arena, mark);
 }
 
+bool anim_pose_due(anim_world *w, uint32_t row) {
+    if (w->instances.flags[row] & ANIM_HIDDEN) {
+        return false;
+    }
+    uint32_t age = w->instances.age[row]++, rate = w->instances.rate[row];
+    return rate < 2 || age % rate == 0 || !w->instances.posed[row];
+}
+
 static void pose_rows(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     anim_world *w = ctx;
     (void)chunk;
     for (uint32_t row = begin; row < end; row++) {
-        if (!(w->instances.flags[row] & ANIM_HIDDEN)) {
+        if (anim_pose_due(w, row)) {
             anim_pose_plain(w, row, &w->scratch[worker]);
         }
     }

@@ -107,6 +107,7 @@ anim_instance anim_instance_create(anim_world *w, const anim_instance_desc *d) {
     w->instances.speed[row] = d->speed == 0 ? 1 : d->speed;
     w->instances.user[row] = d->user;
     w->instances.place[row] = place;
+    w->instances.age[row] = h.index; // neighbours take turns
     s->users++;
     w->bones_live += s->bones;
     return h;
@@ -478,6 +479,18 @@ bool anim_instance_set_visible(anim_world *w, anim_instance h, bool visible) {
     }
     uint32_t flags = w->instances.flags[row] & ~(uint32_t)ANIM_HIDDEN;
     w->instances.flags[row] = flags | (visible ? 0u : (uint32_t)ANIM_HIDDEN);
+    return true;
+}
+
+bool anim_instance_set_rate(anim_world *w, anim_instance h, uint32_t every) {
+    uint32_t row = anim_get_instance(w, h);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    if (every < 1 || every > 64) {
+        return core_fail("anim_instance_set_rate: every %u poses; expected 1..64", every);
+    }
+    w->instances.rate[row] = every;
     return true;
 }
 

@@ -202,6 +202,15 @@ static int set_visible(script *s, lua_State *L, void *args) {
     return done(L, anim_instance_set_visible(world_of(s), a->self, a->value));
 }
 
+typedef struct rate_args {
+    core_handle self;
+    int64_t every;
+} rate_args;
+static int set_rate(script *s, lua_State *L, void *args) {
+    const rate_args *a = args;
+    return done(L, anim_instance_set_rate(world_of(s), a->self, (uint32_t)a->every));
+}
+
 static int get_entity(script *s, lua_State *L, void *args) {
     bind_push(s, L, &bind_entity_type, scene_entity_of_anim(s->scene, *(core_handle *)args));
     return 1;
@@ -329,6 +338,10 @@ const bind_fn bind_animator_methods[] = {
     {"setVisible", "When false its pose is not computed; its machine still runs.",
      BIND_ARGS({"visible", BIND_BOOL, BIND_AT(flag_args, value), ""}), NULL, sizeof(flag_args),
      BIND_SIM, .mod = true, .cost = 4, .run = set_visible},
+    {"setRate", "Level of detail: its pose is computed at every n-th step only.",
+     BIND_ARGS({"every", BIND_INT, BIND_AT(rate_args, every), "steps", NULL, BIND_BETWEEN, .min = 1,
+                .max = 64}),
+     NULL, sizeof(rate_args), BIND_SIM, .mod = true, .cost = 4, .run = set_rate},
     {"getEntity", "The entity it moves, or nil.", NULL,
      BIND_RETURNS({"entity", "corsac.Entity?", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 4,
      .run = get_entity},

@@ -408,6 +408,10 @@ function Animator:getBonePosition(bone) end
 ---@param visible boolean
 function Animator:setVisible(visible) end
 
+---Level of detail: its pose is computed at every n-th step only.
+---@param every integer steps
+function Animator:setRate(every) end
+
 ---The entity it moves, or nil.
 ---@return corsac.Entity? entity
 function Animator:getEntity() end

@@ -89,6 +89,44 @@ static void test_same_bits_everywhere(void) {
     }
 }
 
+// At rate n each instance is posed every n-th time, in turns, and its lag is what the error shows.
+static void test_rates(void) {
+    anim_world_desc desc = anim_world_desc_default();
+    anim_world *w = anim_world_create(&desc);
+    crowd_clip(&c, "clip", 1, 0.5f);
+    anim_skeleton skeleton = anim_skeleton_create(w, &c.skeleton);
+    anim_clip clip = crowd_clip_create(w, skeleton, &c);
+    anim_instance instance[8];
+    for (uint32_t i = 0; i < 8; i++) {
+        anim_instance_desc d = anim_instance_desc_default();
+        d.skeleton = skeleton;
+        d.clip = clip;
+        instance[i] = anim_instance_create(w, &d);
+        TEST_ASSERT_TRUE(anim_instance_set_rate(w, instance[i], 4));
+    }
+    TEST_ASSERT_FALSE(anim_instance_set_rate(w, instance[0], 65));
+    float last[8] = {0};
+    for (int step = 0; step < 16; step++) {
+        anim_world_update(w, 1.0f / 60);
+        anim_world_pose(w);
+        uint32_t bones, posed = 0;
+        for (uint32_t i = 0; i < 8; i++) {
+            float now = anim_instance_palette(w, instance[i], &bones)[66 * 12 + 3];
+            posed += now != last[i];
+            last[i] = now;
+        }
+        TEST_ASSERT_EQUAL_UINT32(step == 0 ? 8 : 2, posed);
+    }
+    double lag = anim_world_error_max(w, 0);
+    TEST_ASSERT_TRUE(lag > 1e-3); // up to three steps behind
+    for (uint32_t i = 0; i < 8; i++) {
+        anim_instance_set_rate(w, instance[i], 1);
+    }
+    anim_world_pose(w);
+    TEST_ASSERT_TRUE(anim_world_error_max(w, 0) < 2e-5);
+    anim_world_destroy(w);
+}
+
 static void test_settings(void) {
     anim_world_desc desc = anim_world_desc_default();
     anim_world *w = anim_world_create(&desc);
@@ -103,6 +141,7 @@ static void test_settings(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_same_bits_everywhere);
+    RUN_TEST(test_rates);
     RUN_TEST(test_settings);
     return UNITY_END();
 }
