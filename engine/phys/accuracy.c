@@ -327,6 +327,7 @@ void phys_world_accuracy(phys_world *w, phys_accuracy *out) {
     measure_motion(w, out, &p, &mass, &anchored);
     measure_overlap(w, out);
     measure_tunnelling(w);
+    out->joint_error_max_m = phys_joints_error(w);
     out->tunnelled = w->tunnelled;
     if (!w->measured) {
         w->measured = true;

@@ -230,6 +230,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
         core_columns_remove(&w->shapes.set, core_columns_handle(&w->shapes.set, i), NULL, NULL);
         slot = next;
     }
+    phys_joints_drop_body(w, body.index);
     w->order_count = 0;
     w->trees_stale = w->rows_stale = true;
     w->measured = false;

@@ -120,6 +120,16 @@ void phys_integrate_rotation(phys_bodies *b, uint32_t i, float h) {
     put_quat(b, i, framed ? phys_quat_mul(q, phys_conj(b->iq[i])) : q);
 }
 
+core_quat phys_turned(core_quat q, core_vec3 turn) {
+    float angle = core_v3_length(turn), s, c;
+    if (angle == 0.0f) {
+        return q;
+    }
+    half_turn(0.5f * angle, &s, &c);
+    core_vec3 u = core_v3_scale(turn, s / angle);
+    return phys_quat_mul((core_quat){u.x, u.y, u.z, c}, q);
+}
+
 // Ends a step: `turn` is the sum of the substeps' angular velocity times h. A free body turns by
 // the splitting above in quarters of the step; a touched one by its turn, while its angular
 // velocity follows the gyroscopic term.
@@ -136,15 +146,7 @@ void phys_finish_rotation(phys_bodies *b, uint32_t i, core_vec3 turn, float dt, 
     if (!round) {
         phys_integrate_rotation(b, i, dt);
     }
-    float angle = core_v3_length(turn);
-    if (angle == 0.0f) {
-        put_quat(b, i, q);
-        return;
-    }
-    float s, c;
-    half_turn(0.5f * angle, &s, &c);
-    core_vec3 u = core_v3_scale(turn, s / angle);
-    put_quat(b, i, phys_quat_mul((core_quat){u.x, u.y, u.z, c}, q));
+    put_quat(b, i, phys_turned(q, turn));
 }
 
 typedef struct pull {

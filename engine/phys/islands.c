@@ -17,11 +17,12 @@
 #define VERY_HEAVY_RATIO 300.0f
 #define SLENDER_RATIO    4.0f // height over width along gravity
 #define SLENDER_BODIES   8u
+#define CHAIN_JOINTS     16u // trees of at least as many joints: they swing and whip
 
 typedef struct island {
     core_vec3 lo, hi;
     float ratio;
-    uint32_t count;
+    uint32_t count, joints;
     bool restless;
 } island;
 
@@ -73,6 +74,7 @@ static void wake_touched(phys_world *w, uint32_t a, uint32_t b) {
 }
 
 static void wake_by_touch(phys_world *w) {
+    phys_joints_wake(w);
     for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
         if (w->balls.separation[i] < PHYS_APART) {
             wake_touched(w, w->balls.a[i], w->balls.b[i]);
@@ -122,7 +124,16 @@ static void note_pair(const phys_bodies *b, uint32_t *parent, float *ratio, uint
     ratio[i] = CORE_MAX(ratio[i], r);
 }
 
-static void gather_pairs(phys_world *w, uint32_t *parent, float *ratio) {
+static void gather_pairs(phys_world *w, uint32_t *parent, float *ratio, uint32_t *joints) {
+    for (uint32_t i = 0; i < core_columns_count(&w->joints.set); i++) {
+        uint32_t a = phys_joint_body(&w->bodies.set, w->joints.a[i]);
+        uint32_t b = phys_joint_body(&w->bodies.set, w->joints.b[i]);
+        if (a != CORE_NO_ROW && b != CORE_NO_ROW && phys_mobile(&w->bodies, a) &&
+            phys_mobile(&w->bodies, b)) {
+            join(parent, a, b); // trees are exact at any ratio of masses
+            joints[a]++;
+        }
+    }
     for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
         if (!w->balls.fixed[i] && w->balls.separation[i] < PHYS_APART) {
             note_pair(&w->bodies, parent, ratio, w->balls.a[i], w->balls.b[i]);
@@ -144,7 +155,8 @@ static uint8_t island_level(const phys_world *w, const island *s) {
     float height = core_absf(core_v3_dot(size, phys_abs3(up)));
     core_vec3 flat = core_v3_sub(size, core_v3_scale(phys_abs3(up), height));
     bool slender = s->count >= SLENDER_BODIES && height > SLENDER_RATIO * core_v3_length(flat);
-    return s->ratio > HEAVY_RATIO || slender ? 1 : 0;
+    bool chain = s->joints >= CHAIN_JOINTS && s->joints < s->count;
+    return s->ratio > HEAVY_RATIO || slender || chain ? 1 : 0;
 }
 
 static void put_to_sleep(phys_bodies *b, uint32_t i, uint32_t id) {
@@ -155,8 +167,8 @@ static void put_to_sleep(phys_bodies *b, uint32_t i, uint32_t id) {
 }
 
 // Sums up islands by their leading rows. Returns how many there are.
-static uint32_t sum_islands(const phys_world *w, uint32_t *parent, const float *ratio, island *sum,
-                            uint32_t n) {
+static uint32_t sum_islands(const phys_world *w, uint32_t *parent, const float *ratio,
+                            const uint32_t *joints, island *sum, uint32_t n) {
     const phys_bodies *b = &w->bodies;
     uint32_t islands = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -175,6 +187,7 @@ static uint32_t sum_islands(const phys_world *w, uint32_t *parent, const float *
         s->ratio = CORE_MAX(s->ratio, ratio[i]);
         s->restless |= !rests(b, i);
         s->count++;
+        s->joints += joints[i];
     }
     return islands;
 }
@@ -200,13 +213,15 @@ void phys_islands_update(phys_world *w, float dt) {
     size_t mark = core_arena_mark(&w->scratch);
     uint32_t *parent = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
     float *ratio = CORE_ARENA_ARRAY(&w->scratch, float, n + 1);
+    uint32_t *joints = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
     island *sum = CORE_ARENA_ARRAY(&w->scratch, island, n + 1);
     for (uint32_t i = 0; i < n; i++) {
         parent[i] = i;
         ratio[i] = 1.0f;
+        joints[i] = 0;
     }
-    gather_pairs(w, parent, ratio);
-    w->islands = sum_islands(w, parent, ratio, sum, n);
+    gather_pairs(w, parent, ratio, joints);
+    w->islands = sum_islands(w, parent, ratio, joints, sum, n);
     for (uint32_t i = 0; i < n; i++) {
         if (!phys_mobile(b, i)) {
             continue;

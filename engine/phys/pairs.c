@@ -20,7 +20,7 @@ bool phys_pair_wanted(const phys_world *w, uint32_t a, uint32_t b) {
     uint32_t ra = w->shapes.row[a], rb = w->shapes.row[b];
     const uint8_t *type = w->bodies.type, *layer = w->bodies.layer;
     return ra != rb && (type[ra] == PHYS_DYNAMIC || type[rb] == PHYS_DYNAMIC) &&
-           (w->rule[layer[ra]] >> layer[rb] & 1u) != 0;
+           (w->rule[layer[ra]] >> layer[rb] & 1u) != 0 && !phys_joints_part(w, ra, rb);
 }
 
 static uint64_t pair_key(uint32_t slot_a, uint32_t slot_b) {

@@ -14,6 +14,7 @@ typedef core_handle phys_body;
 typedef core_handle phys_shape;
 typedef core_handle phys_trigger;
 typedef core_handle phys_field;
+typedef core_handle phys_joint;
 
 typedef enum phys_body_type { PHYS_DYNAMIC, PHYS_STATIC, PHYS_KINEMATIC } phys_body_type;
 typedef enum phys_shape_type {
@@ -159,7 +160,8 @@ typedef enum phys_event_kind {
     PHYS_TRIGGER_STAY,
     PHYS_TRIGGER_EXIT,
     PHYS_CONTACT_BEGIN, // of bodies made with contact_events
-    PHYS_CONTACT_END
+    PHYS_CONTACT_END,
+    PHYS_JOINT_BREAK // the load was beyond break_force or break_torque; or a body was destroyed
 } phys_event_kind;
 typedef struct phys_event {
     phys_event_kind kind;
@@ -167,6 +169,7 @@ typedef struct phys_event {
     phys_body a, b;       // trigger: a is the body, b null. Either may be stale in EXIT and END
     core_vec3 normal;     // BEGIN: unit, from a to b
     float speed;          // BEGIN: approach speed along the normal (m/s)
+    phys_joint joint;     // JOINT_BREAK: stale by now; else null
 } phys_event;
 // Valid until the next step. *count may be 0 with a NULL result.
 const phys_event *phys_world_events(const phys_world *world, uint32_t *count);
@@ -226,6 +229,71 @@ bool phys_world_closest(phys_world *world, core_vec3 point, float reach, const p
 size_t phys_world_save_size(phys_world *world);
 void phys_world_save(phys_world *world, void *out);
 bool phys_world_restore(phys_world *world, const void *data, size_t size);
+
+// Joints of two bodies, or of a body and the world (a null handle). Where the joints of a group of
+// bodies form trees (any number of them to the world or to static bodies), each substep solves
+// them exactly, whatever the masses (Baraff, "Linear-time dynamics using Lagrange multipliers",
+// SIGGRAPH 1996); loops are left to iteration. Only for the solver "soft".
+typedef enum phys_joint_type {
+    PHYS_JOINT_FIXED,     // no freedom left
+    PHYS_JOINT_BALL,      // turns about the anchor; cone and twist limits
+    PHYS_JOINT_DISTANCE,  // keeps the anchors' distance, or within limits (a rope), or a spring
+    PHYS_JOINT_REVOLUTE,  // turns about the axis
+    PHYS_JOINT_PRISMATIC, // slides along the axis
+    PHYS_JOINT_UNIVERSAL, // Cardan: the axis on a stays at a right angle to axis_b on b
+    PHYS_JOINT_PIVOT,     // a turns about its axis `ratio` times as fast as b about axis_b
+    PHYS_JOINT_PULLEY     // |anchor_a - ground_a| + ratio |anchor_b - ground_b| is constant
+} phys_joint_type;
+
+// Places and directions are the world's at the time of creation, which is the rest position: angle
+// 0, slide 0. The coordinate of limits, motor and spring is the angle of b against a about the axis
+// (revolute, rad, within +-pi; ball: twist), the way of b along it (prismatic, m), the distance of
+// the anchors (distance, m).
+typedef struct phys_joint_desc {
+    phys_joint_type type;
+    phys_body a, b;
+    core_vec3 anchor;       // m; both anchors unless the two below are used
+    core_vec3 anchor_a;     // distance, pulley
+    core_vec3 anchor_b;     // distance, pulley
+    core_vec3 axis;         // any length > 0, default +y
+    core_vec3 axis_b;       // universal, pivot; default: +x for universal, axis for pivot
+    bool limit;             // ball (twist), distance, revolute, prismatic
+    float lower, upper;     // lower <= upper; revolute and twist within +-pi, distance >= 0
+    float cone;             // ball: largest angle between the axes, (0, pi); 0: none
+    bool motor;             // distance, revolute, prismatic
+    float motor_speed;      // m/s or rad/s
+    float motor_max;        // N or N m, >= 0
+    float hertz;            // spring towards `rest`, 0: none; distance, revolute, prismatic
+    float rest;             // m or rad; distance: 0 is the distance at creation
+    float damping_ratio;    // of the spring, >= 0
+    float damping;          // N s/m or N m s/rad, >= 0; distance, revolute, prismatic
+    float ratio;            // pivot (may be negative: meshing gears), pulley (> 0); default 1
+    core_vec3 ground_a;     // pulley
+    core_vec3 ground_b;     // pulley
+    float break_force;      // N, 0: never
+    float break_torque;     // N m, 0: never
+    bool collide_connected; // the two bodies touch each other as if they had no joint
+    uint64_t user;          // the caller's own, never read
+    uint32_t cookie;
+} phys_joint_desc;
+phys_joint_desc phys_joint_desc_default(phys_joint_type type);
+// Null + core_fail for bad input: stale bodies, the same body twice, no dynamic body, NaN, zero
+// axes, options that the type does not have.
+phys_joint phys_joint_create(phys_world *world, const phys_joint_desc *desc);
+// False + core_fail for stale handles, as below. A body's joints go with it.
+bool phys_joint_destroy(phys_world *world, phys_joint joint);
+bool phys_joint_alive(const phys_world *world, phys_joint joint);
+uint32_t phys_joint_count(const phys_world *world);
+uint64_t phys_joint_user(const phys_world *world, phys_joint joint);
+// What the joint did to b in the last substep, force at the anchor (N, N m, world axes).
+bool phys_joint_force(const phys_world *world, phys_joint joint, core_vec3 *force,
+                      core_vec3 *torque);
+// The coordinate (see above) in the present pose; 0 + core_fail for types without one.
+float phys_joint_value(const phys_world *world, phys_joint joint);
+bool phys_joint_set_motor(phys_world *world, phys_joint joint, bool on, float speed, float max);
+bool phys_joint_set_limits(phys_world *world, phys_joint joint, bool on, float lower, float upper);
+bool phys_joint_set_spring(phys_world *world, phys_joint joint, float hertz, float damping_ratio,
+                           float rest);
 
 // The poses, for sync and columns(): arrays of phys_body_count rows, valid until the next create,
 // destroy or step. COM positions equal origins for single centred shapes; these are body origins.

@@ -14,8 +14,8 @@ typedef struct header {
 } header;
 
 static int world_sets(phys_world *w, core_columns *set[8]) {
-    core_columns *all[] = {&w->bodies.set,   &w->shapes.set, &w->balls.set, &w->contacts.set,
-                           &w->triggers.set, &w->visits.set, &w->fields.set};
+    core_columns *all[] = {&w->bodies.set,   &w->shapes.set, &w->balls.set,  &w->contacts.set,
+                           &w->triggers.set, &w->visits.set, &w->fields.set, &w->joints.set};
     memcpy(set, all, sizeof all);
     return (int)CORE_COUNT_OF(all);
 }
@@ -76,7 +76,7 @@ bool phys_world_restore(phys_world *w, const void *data, size_t size) {
     w->time = h.time;
     memcpy(w->rule, h.rule, sizeof h.rule);
     phys_pairs_rebuild_map(w);
-    w->trees_stale = w->rows_stale = w->edited = true;
+    w->trees_stale = w->rows_stale = w->edited = w->joint_pairs.stale = true;
     w->measured = false;
     w->order_count = 0;
     w->events.count = w->pending.count = 0;

@@ -5,6 +5,7 @@
 // that only two passes over the contacts remain per substep; contact stiffness follows the substep
 // rate.
 #include "phys/soft.h"
+#include "phys/joint_solve.h"
 
 #include <string.h>
 
@@ -44,6 +45,7 @@ typedef struct soft {
     soft_spring spring, spring_fixed;
     soft_group group[GROUPS];
     soft_place *ball_place, *contact_place;
+    soft_joints *joints; // NULL: none
     soft_balls_fn *run_balls;
     soft_manifolds_fn *run_manifolds;
     soft_flat_fn *push, *move;
@@ -397,6 +399,9 @@ static void run_blocks(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, 
 
 // Colour after colour; contacts with what cannot move come last and so have the last word.
 static void run_pass(soft *s, soft_pass pass) {
+    if (s->joints != NULL && (pass == SOFT_SOLVE || pass == SOFT_RELAX)) {
+        phys_soft_joints_pass(s->joints, pass);
+    }
     for (int g = 0; g < GROUPS; g++) {
         const soft_group *group = &s->group[g];
         for (uint32_t c = 0; c < SOFT_COLORS && group->lanes[c] != 0; c++) {
@@ -456,7 +461,7 @@ static void finish_body(soft *s, uint32_t k) {
     if (s->level != 0 && b->type[i] != PHYS_DYNAMIC) {
         return; // every level carries the kinematic bodies along; one moves them
     }
-    bool free = b->touching[i] == 0;
+    bool free = b->touching[i] == 0 && (s->joints == NULL || !s->joints->jointed[k]);
     if (free && b->type[i] == PHYS_DYNAMIC && w->integrator != NULL && b->locks[i] == 0) {
         phys_integrate_free(w, i, s->dt, s->substeps);
         return;
@@ -488,6 +493,9 @@ static void solve_substeps(soft *s, int substeps) {
         run_pass(s, SOFT_SOLVE);
         hold_locks(s);
         flat(s, s->move);
+        if (s->joints != NULL) {
+            phys_soft_joints_move(s->joints);
+        }
         run_pass(s, SOFT_RELAX);
         hold_locks(s);
     }
@@ -557,11 +565,15 @@ static void step_level(phys_world *w, float dt, uint32_t level) {
         make_bodies(&s);
         color_contacts(&s);
         make_blocks(&s);
+        s.joints = phys_soft_joints_begin(w, &s.bodies, s.index, level, s.h);
         each(&s, s.ball_count, fill_ball);
         each(&s, s.contact_count, fill_manifold);
         solve_substeps(&s, substeps);
         each(&s, s.ball_count, store_ball);
         each(&s, s.contact_count, store_manifold);
+        if (s.joints != NULL) {
+            phys_soft_joints_end(s.joints);
+        }
         each(&s, s.bodies.count, finish_body);
     }
     core_arena_rewind(&w->scratch, mark);

@@ -45,6 +45,10 @@ static bool pick_broad(phys_world *w, const char *name) {
 static bool pick_solver(phys_world *w, const char *name) {
     for (size_t i = 0; i < CORE_COUNT_OF(solvers); i++) {
         if (strcmp(name, solvers[i]->name) == 0) {
+            if (solvers[i] != &phys_solver_soft && core_columns_count(&w->joints.set) != 0) {
+                return core_fail("phys setting solver: '%s' has no joints, of which there are %u",
+                                 name, core_columns_count(&w->joints.set));
+            }
             w->solver = solvers[i];
             phys_wake_all(w);
             return true;
@@ -78,6 +82,7 @@ static bool make_storage(phys_world *w, uint32_t max_bodies) {
            phys_shapes_init(&w->shapes, "phys.shapes", max_bodies * 2) &&
            phys_balls_init(&w->balls, "phys.balls", pairs) &&
            phys_contacts_init(&w->contacts, "phys.contacts", pairs) &&
+           phys_joints_init(&w->joints, "phys.joints", 1u << 20) &&
            phys_triggers_init(&w->triggers, "phys.triggers", 1u << 16) &&
            phys_visits_init(&w->visits, "phys.visits", 1u << 20) &&
            phys_fields_init(&w->fields, "phys.fields", 1u << 12) &&
@@ -121,6 +126,8 @@ void phys_world_destroy(phys_world *w) {
     core_columns_release(&w->shapes.set);
     core_columns_release(&w->balls.set);
     core_columns_release(&w->contacts.set);
+    core_columns_release(&w->joints.set);
+    core_free(w->joint_pairs.key);
     core_columns_release(&w->triggers.set);
     core_columns_release(&w->visits.set);
     core_columns_release(&w->fields.set);
@@ -263,6 +270,7 @@ bool phys_world_step(phys_world *w, float dt) {
     core_stage_begin(w->metrics, CORE_STAGE_PHYS);
     phys_events_begin(w);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_BROAD);
+    phys_joints_list_pairs(w);
     phys_shapes_update_bounds(w, dt);
     w->broad->find(w);
     phys_pairs_update(w);
@@ -277,6 +285,7 @@ bool phys_world_step(phys_world *w, float dt) {
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
     w->solver->step(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    phys_joints_break(w);
     finish_step(w, dt);
     phys_events_triggers(w);
     core_stage_end(w->metrics, CORE_STAGE_PHYS);
@@ -284,8 +293,8 @@ bool phys_world_step(phys_world *w, float dt) {
 }
 
 int phys_world_state(const phys_world *w, const core_columns **out, int capacity) {
-    const core_columns *set[] = {&w->bodies.set,   &w->shapes.set, &w->balls.set, &w->contacts.set,
-                                 &w->triggers.set, &w->visits.set, &w->fields.set};
+    const core_columns *set[] = {&w->bodies.set, &w->shapes.set,   &w->balls.set,  &w->contacts.set,
+                                 &w->joints.set, &w->triggers.set, &w->visits.set, &w->fields.set};
     for (int i = 0; out != NULL && i < capacity && i < (int)CORE_COUNT_OF(set); i++) {
         out[i] = set[i];
     }
@@ -295,6 +304,7 @@ int phys_world_state(const phys_world *w, const core_columns **out, int capacity
 size_t phys_world_bytes(const phys_world *w) {
     return sizeof *w + core_columns_bytes(&w->bodies.set) + core_columns_bytes(&w->shapes.set) +
            core_columns_bytes(&w->balls.set) + core_columns_bytes(&w->contacts.set) +
+           core_columns_bytes(&w->joints.set) + w->joint_pairs.capacity * sizeof(uint64_t) +
            core_columns_bytes(&w->triggers.set) + core_columns_bytes(&w->visits.set) +
            core_columns_bytes(&w->fields.set) +
            (w->events.capacity + w->pending.capacity) * sizeof(phys_event) + w->scratch.committed +
@@ -315,7 +325,7 @@ void phys_world_counts(const phys_world *w, core_metrics *m) {
     core_metrics_set(m, CORE_COUNT_PAIRS,
                      core_columns_count(&w->balls.set) + core_columns_count(&w->contacts.set));
     core_metrics_set(m, CORE_COUNT_CONTACTS, w->touching);
-    core_metrics_set(m, CORE_COUNT_JOINTS, 0);
+    core_metrics_set(m, CORE_COUNT_JOINTS, phys_joint_count(w));
     core_metrics_set(m, CORE_COUNT_ISLANDS, w->islands);
     core_metrics_set(m, CORE_COUNT_TRIGGERS, core_columns_count(&w->triggers.set));
 }

@@ -3,6 +3,7 @@
 #define PHYS_WORLD_H
 
 #include "phys/geom.h"
+#include "phys/joint.h"
 #include "phys/motion.h"
 #include "phys/phys.h"
 #include "phys/vec.h"
@@ -256,6 +257,8 @@ struct phys_world {
     phys_shapes shapes;
     phys_balls balls;
     phys_contacts contacts;
+    phys_joints joints;
+    phys_joint_pairs joint_pairs;
     struct phys_hull_entry *hulls; // shared by shapes with equal points
     uint32_t hull_count, hull_capacity;
     phys_triggers triggers;
@@ -426,6 +429,7 @@ bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, f
 
 // integrate.c
 void phys_integrate_velocity(phys_world *world, float h);
+core_quat phys_turned(core_quat q, core_vec3 turn); // by a rotation vector, rad
 void phys_integrate_rotation(phys_bodies *b, uint32_t row, float h);
 void phys_finish_rotation(phys_bodies *b, uint32_t row, core_vec3 turn, float dt, bool free);
 // Moves a free body by a method of motion.h, from its state at the start of the step.

@@ -1,0 +1,120 @@
+// Working set of joints in the soft solver. Every joint is rows of a Jacobian: hard ones, solved
+// together as a block, and soft ones (limit, motor, spring), one by one between bounds. Joints that
+// form trees have their hard rows solved exactly by joint_tree.c; all other rows live in coloured
+// blocks of 16 lanes, worked on by joint_blocks.simd.c.
+#ifndef PHYS_JOINT_SOLVE_H
+#define PHYS_JOINT_SOLVE_H
+
+#include "phys/soft.h"
+
+#define JOINT_NONE UINT32_MAX
+
+// A body that joints hold. Entry 0 is the world.
+typedef struct joint_body {
+    uint32_t row, place; // place: in soft_bodies
+    bool mobile, placed; // placed: has a velocity (mobile or kinematic)
+    float im;
+    core_vec3 center; // now
+    core_quat q, q0;  // now, at the start of the step
+    core_vec3 center0;
+    float before[8]; // velocity before a pass
+} joint_body;
+
+// Jacobian of a row: linear and angular part of a, then of b. Speed = sum of products.
+typedef struct joint_row {
+    float j[12];
+    float error;       // m or rad
+    float bias, relax; // target speed with and without correction, negated
+    float gamma;       // softness: 1 / (h (c + h k)), 1/kg
+    float lo, hi;      // bounds of the impulse
+    float impulse;
+} joint_row;
+
+typedef struct joint_work {
+    uint32_t joint; // row of the columns
+    uint32_t a, b;  // joint_body
+    uint8_t type, hard, soft;
+    bool direct;  // hard rows belong to a tree
+    bool blocked; // has a lane
+    bool upper;   // side of the limit in this step
+    uint32_t block, lane;
+    core_vec3 arm_b;                                  // from the centre of b to its anchor
+    joint_row row[PHYS_JOINT_HARD + PHYS_JOINT_SOFT]; // hard ones, then soft ones
+} joint_work;
+
+typedef struct joint_lanes {
+    LANES j[12][SOFT_LANES];
+    LANES ia[3][SOFT_LANES], ib[3][SOFT_LANES]; // inverse inertia times angular parts
+    LANES bias[SOFT_LANES], relax[SOFT_LANES], gamma[SOFT_LANES];
+    LANES lo[SOFT_LANES], hi[SOFT_LANES], mass[SOFT_LANES], impulse[SOFT_LANES];
+} joint_lanes;
+
+// Lanes whose body stays write to the row of empty lanes. inverse: of the hard rows' matrix.
+typedef struct joint_block {
+    _Alignas(CORE_ALIGN) int32_t a[SOFT_LANES];
+    int32_t b[SOFT_LANES], to_a[SOFT_LANES], to_b[SOFT_LANES];
+    LANES ima[SOFT_LANES], imb[SOFT_LANES];
+    LANES inverse[PHYS_JOINT_HARD][PHYS_JOINT_HARD][SOFT_LANES];
+    joint_lanes hard[PHYS_JOINT_HARD], soft[PHYS_JOINT_SOFT];
+    uint32_t hard_count, soft_count; // most of any lane
+} joint_block;
+
+// One elimination: the joint of a body to its parent in the tree, or to what does not move.
+typedef struct joint_op {
+    uint32_t work, child, parent; // child: JOINT_NONE for joints to what does not move
+    bool flip;                    // the parent is b
+    double g[6][6], t[6][6], inverse[6][6], mu[6];
+} joint_op;
+typedef struct joint_state { // of a joint_body in the direct solve
+    double phi[6][6];        // velocity answer to an impulse, joints so far included
+    double u[6], f[6];
+} joint_state;
+typedef struct joint_tree {
+    joint_op *op; // leaves first; trees one after the other
+    joint_state *state;
+    uint32_t *first; // [trees + 1] first op of each tree
+    uint32_t *body;  // [trees + 1 ..] bodies in the order of the search
+    uint32_t *first_body;
+    uint32_t trees;
+} joint_tree;
+
+typedef struct soft_joints {
+    phys_world *world;
+    soft_bodies *bodies;
+    float h;
+    joint_body *body;
+    uint32_t body_count;
+    bool *jointed; // by place
+    joint_work *work;
+    uint32_t count;
+    joint_tree tree;
+    joint_block *block;
+    uint32_t *first; // first block of each colour
+    uint32_t colors;
+} soft_joints;
+
+// joint_rows.c
+void joint_rows_count(const phys_joints *j, uint32_t row, uint8_t *hard, uint8_t *soft);
+void joint_rows_make(const soft_joints *s, joint_work *k);
+// Whether the upper limit is the nearer one.
+bool joint_rows_upper(const soft_joints *s, const joint_work *k);
+
+// joint_tree.c
+void joint_tree_build(soft_joints *s);
+void joint_tree_factor(soft_joints *s, uint32_t tree);
+void joint_tree_solve(soft_joints *s, uint32_t tree, bool correct);
+// a := inverse of the symmetric positive matrix a, order n <= 6.
+void joint_invert(double a[6][6], uint32_t n);
+
+// joint_solve.c: NULL when no joint is on the level. Called by soft.c in this order: begin,
+// per substep pass SOFT_SOLVE, move, pass SOFT_RELAX; then end.
+soft_joints *phys_soft_joints_begin(phys_world *world, soft_bodies *bodies, const uint32_t *index,
+                                    uint32_t level, float h);
+void phys_soft_joints_pass(soft_joints *s, soft_pass pass);
+void phys_soft_joints_move(soft_joints *s);
+void phys_soft_joints_end(soft_joints *s);
+
+CORE_SIMD_DECLARE(void, phys_joint_blocks,
+                  (joint_block * block, uint32_t count, soft_bodies *bodies, soft_pass pass))
+
+#endif
