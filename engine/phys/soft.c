@@ -17,8 +17,10 @@
 #define DAMPING        10.0f
 // Rolling resistance, as a part of the radius, of balls that touch more than one thing: without it
 // a heap never comes to rest. A lone ball on a floor has none but its material's.
-#define PILE_ROLLING 0.02f
-#define PUSH_MAX     3.0f // m/s
+#define PILE_ROLLING       0.02f
+#define FIRST_TOUCH_MOST   64u
+#define FIRST_TOUCH_PASSES 6
+#define PUSH_MAX           3.0f // m/s
 
 enum { GROUP_BALLS, GROUP_MANIFOLDS, GROUP_FIXED_BALLS, GROUP_FIXED_MANIFOLDS, GROUPS };
 
@@ -479,7 +481,27 @@ static void finish_body(soft *s, uint32_t k) {
     phys_finish_rotation(b, i, turn, s->dt, free);
 }
 
+// A first touch has no impulses to start from: where there are few contacts, some more passes find
+// them at once, or a block on a slope would slip by some millimetres a second while they grow.
+static bool first_touch(const soft *s) {
+    if (s->contact_count > FIRST_TOUCH_MOST) {
+        return false;
+    }
+    for (uint32_t k = 0; k < s->contact_count; k++) {
+        const phys_manifold *m = &s->world->contacts.manifold[s->contact[k]];
+        float sum = 0.0f;
+        for (uint32_t i = 0; i < m->count; i++) {
+            sum += m->point[i].normal_impulse;
+        }
+        if (sum == 0.0f) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void solve_substeps(soft *s, int substeps) {
+    int extra = first_touch(s) ? FIRST_TOUCH_PASSES : 0;
     bool fields = core_columns_count(&s->world->fields.set) != 0;
     for (int k = 0; k < substeps; k++) {
         if (fields && k > 0) {
@@ -497,6 +519,9 @@ static void solve_substeps(soft *s, int substeps) {
             phys_soft_joints_move(s->joints);
         }
         run_pass(s, SOFT_RELAX);
+        for (; extra > 0; extra--) {
+            run_pass(s, SOFT_RELAX);
+        }
         hold_locks(s);
     }
     if (s->bounces) {

@@ -262,6 +262,19 @@ static void finish_step(phys_world *w, float dt) {
     w->time += (double)dt;
 }
 
+// Nothing moves and nothing was changed: the step has only its clock and its triggers to do.
+static bool all_at_rest(const phys_world *w) {
+    if (w->edited || w->pairs_stale || w->rows_stale) {
+        return false;
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->bodies.set); i++) {
+        if (phys_moves(&w->bodies, i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool phys_world_step(phys_world *w, float dt) {
     if (!(dt > 0.0f && dt <= 1.0f)) {
         return core_fail("phys step: dt is %g s, expected more than 0 and at most 1", (double)dt);
@@ -269,6 +282,13 @@ bool phys_world_step(phys_world *w, float dt) {
     core_arena_reset(&w->scratch);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS);
     phys_events_begin(w);
+    if (all_at_rest(w)) {
+        w->islands = 0;
+        w->time += (double)dt;
+        phys_events_triggers(w);
+        core_stage_end(w->metrics, CORE_STAGE_PHYS);
+        return true;
+    }
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_BROAD);
     phys_joints_list_pairs(w);
     phys_shapes_update_bounds(w, dt);
