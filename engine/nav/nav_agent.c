@@ -116,14 +116,11 @@ static bool check_goal(core_vec3 goal) {
                      (double)goal.y, (double)goal.z);
 }
 
-// Sets out on a path that was just planned, which replaces the one it had.
+// Sets out on the path that was just planned.
 static bool set_out(nav_world *w, uint32_t row, nav_path path, core_vec3 goal) {
     nav_agents *a = &w->agent;
     if (core_handle_is_null(path)) {
         return false;
-    }
-    if (!core_handle_equal(path, a->path[row]) && nav_path_alive(w, a->path[row])) {
-        nav_path_destroy(w, a->path[row]);
     }
     a->path[row] = path;
     a->gx[row] = goal.x, a->gy[row] = goal.y, a->gz[row] = goal.z;
@@ -138,13 +135,8 @@ bool nav_agent_go(nav_world *w, nav_agent agent, nav_graph graph, core_vec3 goal
     if (row == CORE_NO_ROW || nav_graph_row(w, graph) == CORE_NO_ROW || !check_goal(goal)) {
         return false;
     }
-    nav_path path = w->agent.path[row];
-    uint32_t old = core_columns_row(&w->path.set, path);
-    if (old != CORE_NO_ROW && core_handle_equal(w->path.head[old].graph, graph)) {
-        nav_path_set(w, path, place(&w->agent, row), goal);
-    } else {
-        path = nav_path_create(w, graph, place(&w->agent, row), goal);
-    }
+    nav_path path =
+        nav_path_renew(w, w->agent.path[row], graph, CORE_NULL_HANDLE, place(&w->agent, row), goal);
     return set_out(w, row, path, goal);
 }
 
@@ -153,15 +145,12 @@ bool nav_agent_go_on_mesh(nav_world *w, nav_agent agent, nav_mesh mesh, core_vec
     if (row == CORE_NO_ROW || !check_goal(goal)) {
         return false;
     }
-    nav_path path = w->agent.path[row];
-    uint32_t old = core_columns_row(&w->path.set, path);
-    if (old != CORE_NO_ROW && core_handle_equal(w->path.head[old].mesh, mesh) &&
-        nav_mesh_alive(w, mesh)) {
-        nav_path_set(w, path, place(&w->agent, row), goal);
-    } else {
-        path = nav_path_create_on_mesh(w, mesh, place(&w->agent, row), goal);
+    if (!nav_mesh_alive(w, mesh)) {
+        return core_fail("nav agent: the surface to cross does not exist");
     }
-    uint32_t count = nav_path_alive(w, path) ? nav_path_count(w, path) : 0;
+    nav_path path =
+        nav_path_renew(w, w->agent.path[row], CORE_NULL_HANDLE, mesh, place(&w->agent, row), goal);
+    uint32_t count = nav_path_count(w, path);
     if (count) {
         nav_path_point(w, path, count - 1, &goal); // on the surface
     }

@@ -318,6 +318,9 @@ double nav_octile(double dx, double dy, double dz);
 // nav_grid.c
 void nav_grid_scratch_release(nav_world *world);
 // nav_path.c
+// Plans a path on a live graph or mesh (the other null), in the place of `old` when that lives.
+nav_path nav_path_renew(nav_world *world, nav_path old, nav_graph graph, nav_mesh mesh,
+                        core_vec3 start, core_vec3 goal);
 bool nav_path_outdated(const nav_world *world, uint32_t row); // its graph has changed
 void nav_path_refresh(nav_world *world, uint32_t row);        // plans when its graph has changed
 // nav_avoid.c

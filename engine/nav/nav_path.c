@@ -32,6 +32,19 @@ static nav_path create(nav_world *w, nav_path_head head) {
     return path;
 }
 
+nav_path nav_path_renew(nav_world *w, nav_path old, nav_graph graph, nav_mesh mesh, core_vec3 start,
+                        core_vec3 goal) {
+    nav_path_head head = {.graph = graph, .mesh = mesh, .start = start, .goal = goal};
+    uint32_t row = core_columns_row(&w->path.set, old);
+    if (row == CORE_NO_ROW) {
+        return create(w, head);
+    }
+    head.plans = w->path.head[row].plans;
+    w->path.head[row] = head;
+    nav_path_update(w, old);
+    return old;
+}
+
 nav_path nav_path_create(nav_world *w, nav_graph graph, core_vec3 start, core_vec3 goal) {
     if (nav_graph_row(w, graph) == CORE_NO_ROW || !finite_points(start, goal)) {
         return CORE_NULL_HANDLE;
