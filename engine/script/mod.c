@@ -171,6 +171,31 @@ static uint32_t quota_of(const char *type) {
                                                                     : 64;
 }
 
+static void append_made(mod_made **list, int *count, int *capacity, mod_made made) {
+    if (*count == *capacity) {
+        int more = CORE_MAX(16, 2 * *capacity);
+        *list = core_realloc(*list, (size_t)*capacity * sizeof made, (size_t)more * sizeof made);
+        *capacity = more;
+    }
+    (*list)[(*count)++] = made;
+}
+
+// Forgets what has been destroyed since: a quota is of living objects.
+static void count_living(script_mod *m) {
+    int living = 0;
+    memset(m->owned, 0, sizeof m->owned);
+    for (int i = 0; i < m->kept_count; i++) {
+        const mod_made *made = &m->kept[i];
+        if (made->type->alive(m->view, made->handle)) {
+            m->kept[living++] = *made;
+            for (int t = 0; t < m->view->type_count; t++) {
+                m->owned[t] += m->view->type[t].type == made->type;
+            }
+        }
+    }
+    m->kept_count = living;
+}
+
 void script_mod_charge(script *s, lua_State *L, const bind_fn *fn) {
     script_mod *m = s->as_mod;
     script_guard_charge(&m->guard, fn->cost + 10);
@@ -183,9 +208,13 @@ void script_mod_charge(script *s, lua_State *L, const bind_fn *fn) {
     }
     for (int i = 0; makes_object(fn) && i < s->type_count; i++) {
         const char *type = s->type[i].type->name;
-        if (strcmp(fn->returns->type + 7, type) == 0 && m->owned[i] >= quota_of(type)) {
-            bind_error(L, "a mod makes at most %u objects of class %s", (unsigned)quota_of(type),
-                       type);
+        if (strcmp(fn->returns->type + 7, type) != 0 || m->owned[i] < quota_of(type)) {
+            continue;
+        }
+        count_living(m);
+        if (m->owned[i] >= quota_of(type)) {
+            bind_error(L, "a mod has at most %u objects of class %s at a time",
+                       (unsigned)quota_of(type), type);
         }
     }
 }
@@ -238,13 +267,9 @@ void script_mod_made(script *s, lua_State *L, const bind_fn *fn) {
         if (core_handle_is_null(h)) {
             continue;
         }
-        if (m->made_count == m->made_capacity) {
-            int capacity = CORE_MAX(16, 2 * m->made_capacity);
-            m->made = core_realloc(m->made, (size_t)m->made_capacity * sizeof *m->made,
-                                   (size_t)capacity * sizeof *m->made);
-            m->made_capacity = capacity;
-        }
-        m->made[m->made_count++] = (mod_made){s->type[i].type, h};
+        mod_made made = {s->type[i].type, h};
+        append_made(&m->made, &m->made_count, &m->made_capacity, made);
+        append_made(&m->kept, &m->kept_count, &m->kept_capacity, made);
         m->owned[i]++;
     }
 }
@@ -466,6 +491,7 @@ static void destroy_mod(script_mod *m) {
     core_free(m->journal);
     core_free(m->text);
     core_free(m->made);
+    core_free(m->kept);
     core_free(m);
 }
 

@@ -47,7 +47,9 @@ typedef struct script_mod {
     size_t text_used;
     mod_made *made;
     int made_count, made_capacity;
-    uint32_t owned[32]; // objects made so far, by class
+    mod_made *kept; // what all its calls made and may still live
+    int kept_count, kept_capacity;
+    uint32_t owned[32]; // entries of `kept` by class
 } script_mod;
 
 core_rng *script_mod_stream(script_mod *m);

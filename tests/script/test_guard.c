@@ -321,6 +321,21 @@ static void test_a_mod_that_goes_over_its_budget_again_and_again_is_switched_off
     stop();
 }
 
+static void test_a_quota_counts_what_lives(void) {
+    play("local made = 0\n"
+         "corsac.mod.before('fixed', function()\n"
+         "    local bodies = {}\n"
+         "    for i = 1, 90 do bodies[i] = corsac.scene.spawn{} made = made + 1 end\n"
+         "    for i = 1, 90 do bodies[i]:destroy() end\n"
+         "end)\n"
+         "corsac.mod.after('fixed', function() if made == 540 then corsac.log('ESCAPED') end end)\n"
+         "for i = 1, 8 do corsac.mod.after('load', function()\n"
+         "    for i = 1, 120 do corsac.scene.spawn{}:destroy() end end) end");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, w.script->mods[0]->errors, "1,500 made, few at a time");
+    TEST_ASSERT_TRUE(escaped);
+    stop();
+}
+
 static void test_the_kill_falls_at_the_same_instruction_in_every_run(void) {
     uint64_t instructions[2];
     for (int i = 0; i < 2; i++) {
@@ -371,6 +386,7 @@ int main(void) {
     RUN_TEST(test_attempts_fail_and_leave_no_trace);
     RUN_TEST(test_what_could_open_a_door_is_not_there);
     RUN_TEST(test_a_mod_that_goes_over_its_budget_again_and_again_is_switched_off);
+    RUN_TEST(test_a_quota_counts_what_lives);
     RUN_TEST(test_the_kill_falls_at_the_same_instruction_in_every_run);
     RUN_TEST(test_a_room_calls_a_mod_back_behind_the_guard);
     RUN_TEST(test_code_that_is_no_text_and_broken_manifests_are_left_out);
