@@ -48,10 +48,17 @@
     X(float, oqy, 0)                                                                               \
     X(float, oqz, 0)                                                                               \
     X(float, oqw, 0)                                                                               \
+    X(scene_drawn, drawn, 0)                                                                       \
     X(core_handle, instance, 0)                                                                    \
     X(float, dx, 0)                                                                                \
     X(float, dy, 0)                                                                                \
     X(float, dz, 0)
+
+typedef struct scene_drawn { // what an instance was last given
+    core_vec3 position;
+    core_quat rotation;
+    core_vec3 size;
+} scene_drawn;
 CORE_COLUMNS_DECLARE(scene_entities, SCENE_ENTITY_COLUMNS)
 
 typedef struct scene_name_text {

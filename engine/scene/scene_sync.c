@@ -61,7 +61,8 @@ static void draw_pose(const scene_entities *e, uint32_t row, float alpha, core_v
     core_quat old_q = {e->oqx[row], e->oqy[row], e->oqz[row], e->oqw[row]};
     core_quat now_q = {e->wqx[row], e->wqy[row], e->wqz[row], e->wqw[row]};
     *p = core_v3_mad(old, core_v3_sub(now, old), alpha);
-    *q = core_quat_nlerp(old_q, now_q, alpha);
+    bool turned = memcmp(&old_q, &now_q, sizeof now_q) != 0;
+    *q = turned ? core_quat_nlerp(old_q, now_q, alpha) : now_q;
 }
 
 bool scene_draw_pose(const scene *s, scene_entity e, float alpha, core_vec3 *p, core_quat *q) {
@@ -77,7 +78,7 @@ void scene_sync_draw(scene *s, float alpha) {
     if (!s->gfx) {
         return;
     }
-    const scene_entities *e = &s->entity;
+    scene_entities *e = &s->entity;
     uint32_t count = core_columns_count(&e->set);
     core_stage_begin(s->metrics, CORE_STAGE_SCENE);
     for (uint32_t row = 0; row < count; row++) {
@@ -89,7 +90,12 @@ void scene_sync_draw(scene *s, float alpha) {
         draw_pose(e, row, alpha, &p, &q);
         core_vec3 size = {e->wsx[row] * e->dx[row], e->wsy[row] * e->dy[row],
                           e->wsz[row] * e->dz[row]};
-        gfx_instance_set_transform(s->gfx, e->instance[row], p, q, size);
+        // Most of a world rests: only what changed is handed on.
+        scene_drawn want = {p, q, size};
+        if (memcmp(&want, &e->drawn[row], sizeof want) != 0) {
+            e->drawn[row] = want;
+            gfx_instance_set_transform(s->gfx, e->instance[row], p, q, size);
+        }
     }
     scene_anim_sync(s);
     core_stage_end(s->metrics, CORE_STAGE_SCENE);
