@@ -119,6 +119,15 @@ class Files(unittest.TestCase):
         result = {"experiment": "m", "methods": {"a": {"params": {}, "samples": [{"x": 1, "y": 2, "verdict": "stable"}]}}}
         self.assertEqual(json.loads(publish.compact(result))["methods"]["a"]["samples"], [[1, 2, "stable"]])
 
+    def test_candidates_of_tune_come_cheapest_first(self):
+        def row(cost, **settings):
+            return {"settings": settings, "error": 1, "cost": cost}
+        fronts = {"contact_a": [row(2, s=1), row(6, s=4)], "contact_b": [row(10, s=1), row(50, s=4)],
+                  "world_o": [row(1, **{"phys.integrator": "exact"}), row(1.5, **{"phys.integrator": "rk4"})]}
+        self.assertEqual(tune.candidates(fronts), [
+            (1, {"s": 1}), (1.5, {"s": 1, "phys.integrator": "rk4"}),
+            (4, {"s": 4}), (6, {"s": 4, "phys.integrator": "rk4"})])
+
     def test_bounds_of_tune(self):
         bounds = [tune.read_bound("accuracy.nan == 0"), tune.read_bound("user.sag_mm<=2.5")]
         self.assertEqual(bounds, [("accuracy.nan", "==", 0), ("user.sag_mm", "<=", 2.5)])

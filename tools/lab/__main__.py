@@ -76,7 +76,8 @@ def rows_of(exp, accuracy, timing):
         error = judge.summary([r.get(exp.error.get("key")) for r in runs])
         cost = judge.summary([r.get(exp.cost.get("key")) for r in timing[index]]) if timing else None
         settings = {k: v for k, v in exp.params(label, point, 0).items() if k != "seed" and k not in exp.fixed}
-        rows.append({"method": label, "point": point, "settings": settings, "error": error, "cost": cost,
+        rows.append({"method": label, "point": point, "settings": settings,
+                     "tune": exp.methods[label].get("tune", True), "error": error, "cost": cost,
                      "figures": {**runs[0], **({} if not timing else timing[index][0])}})
     return rows
 

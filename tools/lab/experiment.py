@@ -5,6 +5,7 @@ kernel | scene        a lab kernel (`corsac lab-run --list`) or a Lua scene run 
 quick                 true: part of `LAB=quick`; docs: true: its chart is copied to docs/charts
 [fixed]               parameters of every case (scenes: `steps`, and `--set` names)
 [methods.LABEL]       parameters of a method; `baseline = true`, `peer = true` mark it on charts;
+                      `tune = false` keeps it from the fronts that `corsac tune` searches,
                       `rename = {a = "b"}` gives the method the swept parameter a under the name b
 [sweep]               NAME = [values]: the full grid; [quick_sweep] replaces lists for LAB=quick
 [error], [cost]       key (of the kernel's or metrics' figures), unit, label; a cost key "cpu_ms_per_step"
@@ -68,7 +69,7 @@ class Experiment:
     def params(self, label, point, seed):
         """All parameters of one case."""
         mine = self.methods[label]
-        method = {k: v for k, v in mine.items() if k not in ("baseline", "peer", "binary", "rename")}
+        method = {k: v for k, v in mine.items() if k not in ("baseline", "peer", "binary", "rename", "tune")}
         names = mine.get("rename", {})
         return {**self.fixed, **method, **{names.get(k, k): v for k, v in point.items()}, "seed": seed}
 

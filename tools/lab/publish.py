@@ -62,7 +62,7 @@ def front_rows(result):
     """What `corsac tune` searches: the settings of a front at the default step, their error and cost."""
     return [{"settings": {k: v for k, v in r["settings"].items() if k != "dt"}, "error": r["error"]["median"],
              "cost": r["cost"]["median"]} for r in result["rows"]
-            if r["error"] and r["cost"] and abs(60 * r["settings"].get("dt", 1 / 60) - 1) < 1e-3]
+            if r["error"] and r["cost"] and r.get("tune", True) and abs(60 * r["settings"].get("dt", 1 / 60) - 1) < 1e-3]
 
 
 def publish(out):

@@ -48,16 +48,29 @@ def usage(text):
     return 2
 
 
-def candidates():
-    """[(relative cost, settings)], cheapest first: the mean over the stored fronts, each measured
-    against its own cheapest setting."""
+def relative_costs(fronts, kind):
+    """{settings as JSON: mean cost over the fronts of a kind}, each front measured against its cheapest."""
     costs = {}
-    for rows in json.loads(FRONTS.read_text()).values():
-        cheapest = min(row["cost"] for row in rows)
-        for row in rows:
-            key = json.dumps(row["settings"], sort_keys=True)
-            costs.setdefault(key, []).append(row["cost"] / cheapest)
-    return sorted((statistics.mean(c), json.loads(key)) for key, c in costs.items())
+    for name, rows in fronts.items():
+        if name.startswith(kind) and rows:
+            cheapest = min(row["cost"] for row in rows)
+            for row in rows:
+                costs.setdefault(json.dumps(row["settings"], sort_keys=True), []).append(row["cost"] / cheapest)
+    return {key: statistics.mean(found) for key, found in costs.items()}
+
+
+def candidates(fronts):
+    """[(relative cost, settings)], cheapest first: settings of the contact solvers, each with the default
+    integrator and with those that the fronts of free motion hold."""
+    integrators = {}
+    for key, cost in relative_costs(fronts, "world_").items():
+        integrators.setdefault(json.loads(key)["phys.integrator"], []).append(cost)
+    default = statistics.mean(integrators["exact"]) if "exact" in integrators else 1
+    choices = [(1, {})] + [(statistics.mean(cost) / default, {"phys.integrator": name})
+                           for name, cost in sorted(integrators.items()) if name != "exact"]
+    found = [(cost * factor, {**json.loads(key), **choice})
+             for key, cost in relative_costs(fronts, "contact_").items() for factor, choice in choices]
+    return sorted(found, key=lambda c: (c[0], len(c[1]), json.dumps(c[1], sort_keys=True)))
 
 
 def command(args, rest, settings, seed):
@@ -87,6 +100,10 @@ def check_names(figures, bounds):
     return None
 
 
+def words_of(settings):
+    return " ".join(f"--set {'phys.substeps' if k == 'substeps' else k}={v}" for k, v in settings.items())
+
+
 def try_settings(args, rest, bounds, seeds, settings):
     """(why it is out or None, worst figure of each bound)."""
     worst = {}
@@ -111,10 +128,6 @@ def cost_of(args, rest, settings, seed):
     return statistics.median(found) if found else None
 
 
-def words_of(settings):
-    return " ".join(f"--set {'phys.substeps' if k == 'substeps' else k}={v}" for k, v in settings.items())
-
-
 def main(argv=None):
     args, rest = arguments(argv)
     bounds = [read_bound(text) for text in args.error]
@@ -128,7 +141,7 @@ def main(argv=None):
     problem = check_names(first, bounds)
     if problem:
         return usage(problem)
-    for relative, settings in candidates():
+    for _, settings in candidates(json.loads(FRONTS.read_text())):
         why, worst = try_settings(args, rest, bounds, seeds, settings)
         print(f"  {'out ' if why else 'HOLD'}  {words_of(settings):60} {why or ''}")
         if not why:
