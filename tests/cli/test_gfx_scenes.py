@@ -46,6 +46,12 @@ class GfxScenes(SceneCase):
     def test_cornell(self):
         self.golden("cornell")
 
+    def test_sky(self):
+        self.golden("sky")
+
+    def test_soft(self):
+        self.golden("soft")
+
     def test_forward_and_clustered_give_one_picture(self):
         args = ("--steps", 2, "--set", "n=200", "--set")
         forward = self.shot("lights", "forward", *args, "method=forward")
