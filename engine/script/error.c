@@ -90,6 +90,12 @@ static int with_traceback(lua_State *L) {
     return 1;
 }
 
+void script_make_handler(script *s, lua_State *L) {
+    lua_pushlightuserdata(L, s);
+    lua_pushcclosure(L, with_traceback, 1);
+    s->handler_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
 void script_record_error(script *s, lua_State *L) {
     if (s->as_mod) {
         script_mod_report(s, L);
@@ -105,8 +111,7 @@ void script_record_error(script *s, lua_State *L) {
 
 bool script_protected(script *s, lua_State *L, int argc, int results) {
     int base = lua_gettop(L) - argc;
-    lua_pushlightuserdata(L, s);
-    lua_pushcclosure(L, with_traceback, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, s->handler_ref);
     lua_insert(L, base);
     bool good = lua_pcall(L, argc, results, base) == 0;
     lua_remove(L, base);

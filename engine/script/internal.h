@@ -64,6 +64,7 @@ struct script {
     int watched_count;
     char path[240];           // the scene\'s file
     int reload_ref, kept_ref; // scripts/corsac/reload.lua and save.lua
+    int handler_ref;          // message handler of protected calls
     int corsac_ref;           // the table `corsac`
     int tick_ref;             // scripts/corsac/tasks.lua
     int error_screen_ref;     // scripts/corsac/error.lua
@@ -103,6 +104,8 @@ bool script_load_chunk(script *s, lua_State *L, const char *virtual_path);
 bool script_call(script *s, uint32_t phase, int argc, int results);
 // The same on any thread of the state, in the phase that runs.
 bool script_protected(script *s, lua_State *L, int argc, int results);
+// Makes the message handler of a state, once: a call then leaves no garbage.
+void script_make_handler(script *s, lua_State *L);
 // Adds nearest name and traceback to the error text on top of the stack.
 void script_push_report(const script *s, lua_State *L);
 // Records an error text (top of the stack, popped) as the run's.

@@ -349,6 +349,7 @@ static int open_mod(lua_State *L) { // the API and the prelude
     script_mod *m = lua_touserdata(L, 1);
     static const char *const parts[] = {"modbase", "tasks", "events", "containers"};
     lua_settop(L, 0);
+    script_make_handler(m->view, L);
     script_push_engine(m->view, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
     for (size_t i = 0; i < CORE_COUNT_OF(parts); i++) {

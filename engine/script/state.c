@@ -331,6 +331,7 @@ lua_State *script_state_create(script *s) {
         return NULL;
     }
     luaL_openlibs(L);
+    script_make_handler(s, L);
     push_engine(s, L);
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
     static const char *const parts[] = {"base",   "native",     "columns", "tasks",

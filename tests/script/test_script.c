@@ -143,6 +143,22 @@ static void test_random_numbers_of_the_view_leave_the_simulation_alone(void) {
     world_close(&other);
 }
 
+static void test_callbacks_leave_no_garbage(void) {
+    must_run("local n = 0 function corsac.fixed(dt) n = n + dt end function corsac.update() end");
+    for (int i = 0; i < 3000; i++) { // the compiler has its say first
+        script_fixed(w.script, 1.0f / 60);
+        script_update(w.script, 1.0 / 60);
+    }
+    lua_gc(w.L, LUA_GCCOLLECT, 0);
+    lua_gc(w.L, LUA_GCSTOP, 0);
+    size_t before = script_bytes(w.script);
+    for (int i = 0; i < 1000; i++) {
+        script_fixed(w.script, 1.0f / 60);
+        script_update(w.script, 1.0 / 60);
+    }
+    TEST_ASSERT_EQUAL_UINT64(before, script_bytes(w.script));
+}
+
 static void test_bad_descriptions_are_refused(void) {
     script_desc options = {0};
     TEST_ASSERT_NULL(script_create(&options));
@@ -163,6 +179,7 @@ int main(void) {
     RUN_TEST(test_expectations_fall_short_one_by_one);
     RUN_TEST(test_json_comes_back_as_it_went);
     RUN_TEST(test_random_numbers_of_the_view_leave_the_simulation_alone);
+    RUN_TEST(test_callbacks_leave_no_garbage);
     RUN_TEST(test_bad_descriptions_are_refused);
     return UNITY_END();
 }
