@@ -142,10 +142,14 @@ static void ask_for_ghost(app_run *r) {
     }
 }
 
-// Not while a run is recorded or replayed: what changed is not in the recording.
+// Scripts not while a run is recorded or replayed: what changed is not in the recording. Shaders
+// change nothing but the picture; their files are looked at every half second or so.
 static void watch(app_run *r) {
     if (r->opt->watch && !r->recorder && !r->replay) {
         script_reload_changed(r->script);
+    }
+    if (r->opt->watch && r->device && r->report.frames % 30 == 0) {
+        gfx_device_reload(r->device); // a broken shader is logged and keeps its last form
     }
 }
 
