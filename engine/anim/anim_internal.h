@@ -31,7 +31,7 @@ typedef struct anim_clip_res {
     anim_skeleton skeleton;
     uint32_t bones, track_count;
     core_clip_track *track;
-    core_key *key;
+    core_key *key, *tangent;
     int32_t *track_of_bone; // [bones] -1 none
     anim_pack *pack;        // compressed: no keys; NULL: raw
     float *rest;            // with pack: [ANIM_COMPONENTS * stride] what no group of it gives

@@ -27,6 +27,22 @@ static bool check_key(const core_clip_data *d, const core_clip_track *t, uint32_
     return true;
 }
 
+static bool check_tangents(const core_clip_data *d, const core_clip_track *t) {
+    if (t->mode > CORE_KEY_CUBIC) {
+        return core_fail("clip %s: bone %u: key mode %d is unknown", d->name, t->bone,
+                         (int)t->mode);
+    }
+    size_t numbers = sizeof(core_key) / sizeof(float);
+    for (size_t i = 0; t->mode == CORE_KEY_CUBIC && t->tangent && i < 2 * t->key_count * numbers;
+         i++) {
+        if (!isfinite((&t->tangent[i / numbers].time)[i % numbers])) {
+            return core_fail("clip %s: bone %u: tangent %zu has a number that is not finite",
+                             d->name, t->bone, i / numbers);
+        }
+    }
+    return true;
+}
+
 static bool check_tracks(const core_clip_data *d) {
     for (uint32_t i = 0; i < d->track_count; i++) {
         const core_clip_track *t = &d->track[i];
@@ -40,6 +56,9 @@ static bool check_tracks(const core_clip_data *d) {
             if (!check_key(d, t, k)) {
                 return false;
             }
+        }
+        if (!check_tangents(d, t)) {
+            return false;
         }
     }
     return true;
@@ -87,17 +106,19 @@ static int compare_events(const void *a, const void *b) {
 }
 
 static anim_clip_res *copy_clip(const anim_clip_desc *desc, const core_clip_data *d) {
-    size_t keys = 0;
+    size_t keys = 0, tangents = 0;
     for (uint32_t i = 0; i < d->track_count; i++) {
         keys += d->track[i].key_count;
+        tangents += d->track[i].mode == CORE_KEY_CUBIC ? 2u * d->track[i].key_count : 0;
     }
     size_t size = sizeof(anim_clip_res) + d->track_count * sizeof(core_clip_track) +
-                  keys * sizeof(core_key) + d->bone_count * sizeof(int32_t) +
+                  (keys + tangents) * sizeof(core_key) + d->bone_count * sizeof(int32_t) +
                   desc->event_count * sizeof(anim_clip_event);
     anim_clip_res *c = core_alloc(size);
     c->track = (core_clip_track *)(c + 1);
     c->key = (core_key *)(c->track + d->track_count);
-    c->track_of_bone = (int32_t *)(c->key + keys);
+    c->tangent = c->key + keys;
+    c->track_of_bone = (int32_t *)(c->tangent + tangents);
     c->event = (anim_clip_event *)(c->track_of_bone + d->bone_count);
     memcpy(c->name, d->name, CORE_NAME_MAX);
     c->duration = d->duration;
@@ -112,19 +133,50 @@ static anim_clip_res *copy_clip(const anim_clip_desc *desc, const core_clip_data
     return c;
 }
 
+// Slopes through the neighbours (Catmull and Rom 1974), one-sided at the ends, in units a second.
+static void make_tangents(const core_key *key, uint32_t count, core_key *out) {
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t a = k > 0 ? k - 1 : k, b = k + 1 < count ? k + 1 : k;
+        const float *p = &key[a].time, *q = &key[b].time;
+        float *m = &out[2 * k].time, d = q[0] - p[0];
+        for (size_t i = 0; i < sizeof *out / sizeof *m; i++) {
+            m[i] = d > 0 ? (q[i] - p[i]) / d : 0;
+        }
+        out[2 * k + 1] = out[2 * k];
+    }
+}
+
+static core_quat toward(core_quat q, core_quat before) {
+    bool far = q.x * before.x + q.y * before.y + q.z * before.z + q.w * before.w < 0;
+    return far ? (core_quat){-q.x, -q.y, -q.z, -q.w} : q;
+}
+
 static void copy_tracks(anim_clip_res *c, const core_clip_data *d) {
     for (uint32_t b = 0; b < c->bones; b++) {
         c->track_of_bone[b] = -1;
     }
-    core_key *key = c->key;
+    core_key *key = c->key, *tangent = c->tangent;
     for (uint32_t i = 0; i < d->track_count; i++) {
-        c->track[i] = d->track[i];
-        c->track[i].key = key;
-        c->track_of_bone[d->track[i].bone] = (int32_t)i;
-        for (uint32_t k = 0; k < d->track[i].key_count; k++, key++) {
-            *key = d->track[i].key[k];
-            key->rotation = core_quat_normalize(key->rotation);
+        core_clip_track *t = &c->track[i];
+        *t = d->track[i];
+        c->track_of_bone[t->bone] = (int32_t)i;
+        bool made = t->mode == CORE_KEY_CUBIC && !t->tangent;
+        for (uint32_t k = 0; k < t->key_count; k++) {
+            key[k] = t->key[k];
+            key[k].rotation = core_quat_normalize(key[k].rotation);
+            if (made && k > 0) { // a spline runs through the quaternions as they are written
+                key[k].rotation = toward(key[k].rotation, key[k - 1].rotation);
+            }
         }
+        t->key = key;
+        if (made) {
+            make_tangents(key, t->key_count, tangent);
+        } else if (t->mode == CORE_KEY_CUBIC) {
+            memcpy(tangent, t->tangent, 2u * t->key_count * sizeof *tangent);
+        }
+        t->tangent = t->mode == CORE_KEY_CUBIC ? tangent : NULL;
+        tangent += t->mode == CORE_KEY_CUBIC ? 2u * t->key_count : 0;
+        key += t->key_count;
     }
 }
 
@@ -331,6 +383,22 @@ core_key anim_key_interpolate(const core_key *a, const core_key *b, float alpha)
     return out;
 }
 
+// Cubic Hermite spline of all components; rotations are normalised after.
+static core_key cubic_key(const core_clip_track *t, uint32_t k, float u) {
+    float d = t->key[k + 1].time - t->key[k].time, u2 = u * u, u3 = u2 * u;
+    float h00 = 2 * u3 - 3 * u2 + 1, h10 = d * (u3 - 2 * u2 + u), h01 = 3 * u2 - 2 * u3;
+    float h11 = d * (u3 - u2);
+    const float *p0 = &t->key[k].time, *p1 = &t->key[k + 1].time;
+    const float *m0 = &t->tangent[2 * k + 1].time, *m1 = &t->tangent[2 * k + 2].time;
+    core_key out;
+    float *o = &out.time;
+    for (size_t i = 0; i < sizeof out / sizeof *o; i++) {
+        o[i] = (h00 * p0[i] + h10 * m0[i]) + (h01 * p1[i] + h11 * m1[i]);
+    }
+    out.rotation = core_quat_normalize(out.rotation);
+    return out;
+}
+
 core_key anim_track_sample(const core_clip_track *t, float time) {
     const core_key *key = t->key;
     uint32_t low = 0, high = t->key_count - 1;
@@ -349,6 +417,14 @@ core_key anim_track_sample(const core_clip_track *t, float time) {
         }
     }
     float alpha = (time - key[low].time) / (key[high].time - key[low].time);
+    switch (t->mode) {
+    case CORE_KEY_STEP:
+        return key[low];
+    case CORE_KEY_CUBIC:
+        return cubic_key(t, low, alpha);
+    case CORE_KEY_LINEAR:
+        break;
+    }
     return anim_key_interpolate(&key[low], &key[high], alpha);
 }
 

@@ -73,6 +73,28 @@ static void mix_nlerp(const bone_pose *a, const bone_pose *b, double u, bone_pos
     }
 }
 
+static void mix_cubic(const core_clip_track *t, uint32_t k, double time, bone_pose *out) {
+    double d = (double)t->key[k + 1].time - t->key[k].time;
+    double u = (time - t->key[k].time) / d, v = 1 - u;
+    bone_pose p[4];
+    key_pose(&t->key[k], &p[0]);
+    key_pose(&t->tangent[2 * k + 1], &p[1]);
+    key_pose(&t->key[k + 1], &p[2]);
+    key_pose(&t->tangent[2 * k + 2], &p[3]);
+    const double h[4] = {v * v * (1 + 2 * u), d * u * v * v, u * u * (3 - 2 * u), -d * u * u * v};
+    *out = (bone_pose){0};
+    for (int i = 0; i < 4; i++) {
+        for (int n = 0; n < 4; n++) {
+            out->q[n] += h[i] * p[i].q[n];
+            if (n < 3) {
+                out->t[n] += h[i] * p[i].t[n];
+                out->s[n] += h[i] * p[i].s[n];
+            }
+        }
+    }
+    normalize4(out->q);
+}
+
 static void sample_track(const core_clip_track *t, double time, bone_pose *out) {
     uint32_t k = 0;
     while (k + 1 < t->key_count && (double)t->key[k + 1].time <= time) {
@@ -85,7 +107,16 @@ static void sample_track(const core_clip_track *t, double time, bone_pose *out) 
         normalize4(out->q);
         return;
     }
+    if (t->mode == CORE_KEY_STEP) {
+        *out = a;
+        normalize4(out->q);
+        return;
+    }
     key_pose(&t->key[k + 1], &b);
+    if (t->mode == CORE_KEY_CUBIC) {
+        mix_cubic(t, k, time, out);
+        return;
+    }
     double t0 = t->key[k].time, t1 = t->key[k + 1].time;
     double u = (time - t0) / (t1 - t0);
     mix_linear(&a, &b, u, out);

@@ -692,6 +692,13 @@ void *anim_pack_encode(const core_skeleton_data *skeleton, const core_clip_data 
                   clip->name, bound, shell, rate, clip->bone_count, skeleton->bone_count);
         return NULL;
     }
+    for (uint32_t i = 0; i < clip->track_count; i++) {
+        if (clip->track[i].mode != CORE_KEY_LINEAR) {
+            core_fail_quiet("clip %s: only linear keys can be compressed; bone %u has others",
+                            clip->name, clip->track[i].bone);
+            return NULL;
+        }
+    }
     encoder e = {.skeleton = skeleton,
                  .clip = clip,
                  .bound = (double)bound,

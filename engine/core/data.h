@@ -47,10 +47,15 @@ typedef struct core_key { // as in the raw .canim: 44 bytes
     core_quat rotation; // x y z w
     core_vec3 scale;
 } core_key;
+typedef enum core_key_mode { CORE_KEY_LINEAR, CORE_KEY_STEP, CORE_KEY_CUBIC } core_key_mode;
 typedef struct core_clip_track {
     uint32_t bone;
     uint32_t key_count; // >= 1
     const core_key *key;
+    core_key_mode mode; // between keys
+    // Cubic: [key_count * 2] in- and out-tangents per second (glTF 2.0, appendix C); NULL: those of
+    // Catmull and Rom. Files of raw keys ("CAN1") are linear.
+    const core_key *tangent;
 } core_clip_track;
 typedef struct core_clip_data {
     char name[CORE_NAME_MAX];

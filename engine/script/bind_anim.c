@@ -112,6 +112,7 @@ typedef struct clip_options {
     const char *name, *root;
     float duration;
     bind_list keys, events;
+    int interpolation;
     bool root_motion;
 } clip_options;
 typedef struct clip_call {
@@ -160,8 +161,8 @@ static int new_clip(script *s, lua_State *L, void *args) {
     for (uint32_t b = 0; b < bones; b++) {
         uint32_t count = gather_keys(s, o, b, key);
         if (count > 0) {
-            track[data.track_count++] =
-                (core_clip_track){.bone = b, .key_count = count, .key = key};
+            track[data.track_count++] = (core_clip_track){
+                .bone = b, .key_count = count, .key = key, .mode = (core_key_mode)o->interpolation};
             key += count;
         }
     }
@@ -451,6 +452,9 @@ static const bind_arg clip_fields[] = {
     {"duration", BIND_FLOAT, BIND_AT(clip_options, duration), "its length", "s", BIND_POSITIVE},
     {"keys", BIND_LIST, BIND_AT(clip_options, keys), "keys of its bones", .fields = key_fields,
      .size = sizeof(key_options)},
+    {"interpolation", BIND_ENUM, BIND_AT(clip_options, interpolation),
+     "between keys; cubic is smooth through all of them", .optional = true,
+     .values = "linear|step|cubic"},
     {"events", BIND_LIST, BIND_AT(clip_options, events), "names told at times", .optional = true,
      .fields = event_fields, .size = sizeof(event_options)},
     {"rootMotion", BIND_BOOL, BIND_AT(clip_options, root_motion),

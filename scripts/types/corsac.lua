@@ -1524,6 +1524,7 @@ function corsac.anim.newSkeleton(bones) end
 ---@field name? string
 ---@field duration number its length, s
 ---@field keys corsac.anim.newClip.options.keys[] keys of its bones
+---@field interpolation? "linear"|"step"|"cubic" between keys; cubic is smooth through all of them
 ---@field events? corsac.anim.newClip.options.events[] names told at times
 ---@field rootMotion? boolean the root's horizontal movement moves the entity
 ---@field root? string bone of the root motion

@@ -108,6 +108,60 @@ static void test_blend_ends_are_exact(void) {
     }
 }
 
+static anim_clip three_keys(core_key_mode mode, const core_key *tangent) {
+    core_key key[3] = {{0, {0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}},
+                       {1, {1, 0, 0}, core_quat_axis_angle(core_v3(0, 0, 1), 0.5f), {1, 1, 1}},
+                       {3, {5, 0, 0}, core_quat_axis_angle(core_v3(0, 0, 1), 1.0f), {1, 1, 1}}};
+    core_clip_track track = {
+        .bone = 1, .key_count = 3, .key = key, .mode = mode, .tangent = tangent};
+    core_clip_data data = {
+        .name = "three", .duration = 3, .bone_count = FIX_BONES, .track_count = 1, .track = &track};
+    anim_clip_desc desc = anim_clip_desc_default();
+    desc.data = &data;
+    desc.skeleton = f.skeleton;
+    return anim_clip_create(f.world, &desc);
+}
+
+static float x_at(anim_clip clip, float time) {
+    fix_pose p;
+    TEST_ASSERT_TRUE(anim_clip_sample(f.world, clip, time, fix_view(&p)));
+    return p.t[1].x;
+}
+
+static void test_step_keys(void) {
+    anim_clip clip = three_keys(CORE_KEY_STEP, NULL);
+    TEST_ASSERT_FLOAT_WITHIN(0, 0, x_at(clip, 0.999f));
+    TEST_ASSERT_FLOAT_WITHIN(0, 1, x_at(clip, 1));
+    TEST_ASSERT_FLOAT_WITHIN(0, 1, x_at(clip, 2.999f));
+    TEST_ASSERT_FLOAT_WITHIN(0, 5, x_at(clip, 3));
+}
+
+// Given tangents: the specification's formula by hand. Without: Catmull and Rom's, (5 - 0) / 3 at
+// the middle key, whose value and slope are continuous there.
+static void test_cubic_keys(void) {
+    core_key zero[6] = {{0}};
+    anim_clip flat = three_keys(CORE_KEY_CUBIC, zero);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.5f, x_at(flat, 0.5f));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.15625f, x_at(flat, 0.25f)); // 3u^2 - 2u^3
+    anim_clip smooth = three_keys(CORE_KEY_CUBIC, NULL);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 1, x_at(smooth, 1));
+    float before = (x_at(smooth, 1) - x_at(smooth, 0.999f)) / 0.001f;
+    float after = (x_at(smooth, 1.001f) - x_at(smooth, 1)) / 0.001f;
+    TEST_ASSERT_FLOAT_WITHIN(0.01f, 5.0f / 3, before);
+    TEST_ASSERT_FLOAT_WITHIN(0.01f, 5.0f / 3, after);
+    anim_instance_desc desc = anim_instance_desc_default();
+    desc.skeleton = f.skeleton;
+    desc.clip = smooth;
+    anim_instance i = anim_instance_create(f.world, &desc);
+    for (int n = 0; n < 30; n++) {
+        anim_instance_set_time(f.world, i, 0.11f * (float)n);
+        anim_world_pose(f.world);
+        TEST_ASSERT_TRUE(anim_world_error_max(f.world, 0) < 3e-6);
+    }
+    zero[3].translation.x = NAN;
+    TEST_ASSERT_TRUE(core_handle_is_null(three_keys(CORE_KEY_CUBIC, zero)));
+}
+
 static anim_clip try_clip(const core_clip_data *data) {
     anim_clip_desc desc = anim_clip_desc_default();
     desc.data = data;
@@ -252,6 +306,8 @@ int main(void) {
     RUN_TEST(test_missing_tracks_keep_bind_pose);
     RUN_TEST(test_shortest_path);
     RUN_TEST(test_blend_ends_are_exact);
+    RUN_TEST(test_step_keys);
+    RUN_TEST(test_cubic_keys);
     RUN_TEST(test_bad_clips_are_refused);
     RUN_TEST(test_bad_skeletons_are_refused);
     RUN_TEST(test_palettes_match_double_evaluator);

@@ -168,6 +168,40 @@ static void test_interruption_does_not_pop(void) {
     TEST_ASSERT_TRUE(worst > 0.01);
 }
 
+// A smooth fade between clips that stand still starts and ends at rest: its speed grows from zero,
+// so that the first and last of n steps move by 3/n^2 of the way, not by 1/n as a linear fade's do.
+static void check_fade_ends(anim_fade fade, float first_step) {
+    anim_clip a = fix_clip(&f, (fix_clip_desc){.name = "a", .duration = 1, .bone = 1, .keys = 1});
+    anim_clip b = fix_clip(
+        &f, (fix_clip_desc){
+                .name = "b", .duration = 1, .move = 1, .bone = 1, .keys = 2, .last = 0.001f});
+    anim_instance_desc desc = anim_instance_desc_default();
+    desc.skeleton = f.skeleton;
+    desc.clip = a;
+    anim_instance i = anim_instance_create(f.world, &desc);
+    anim_instance_play(f.world, i, b, ANIM_ONCE, 1, fade);
+    float before = 0, speed = 0, jump = 0;
+    for (int n = 1; n <= 130; n++) {
+        fix_pose p;
+        run(1.0f / 128, 1);
+        anim_instance_pose(f.world, i, fix_view(&p));
+        float step = p.t[1].x - before;
+        if (n == 1 || n == 128) {
+            TEST_ASSERT_FLOAT_WITHIN(2e-6f, first_step, step);
+        }
+        jump = fmaxf(jump, fabsf(step - speed)); // change of speed from step to step
+        speed = step;
+        before = p.t[1].x;
+    }
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 1, before);
+    // 3s^2 - 2s^3 changes its slope by 6 / n^2 a step at most.
+    TEST_ASSERT_TRUE(fade == ANIM_FADE_SMOOTH ? jump < 6.1f / (128 * 128) : jump > 0.9f / 128);
+}
+static void test_smooth_fade_is_continuous_in_velocity(void) {
+    check_fade_ends(ANIM_FADE_SMOOTH, (3 - 2.0f / 128) / (128 * 128));
+    check_fade_ends(ANIM_FADE_LINEAR, 1.0f / 128);
+}
+
 static void test_interruption_callbacks(void) {
     const anim_transition_desc t[] = {
         {.from = "idle", .to = "run", .when = ANIM_WHEN_EVENT, .event = "go", .length = 0.5f},
@@ -465,6 +499,7 @@ int main(void) {
     RUN_TEST(test_parameter_event_and_finish);
     RUN_TEST(test_first_declared_transition_wins);
     RUN_TEST(test_interruption_does_not_pop);
+    RUN_TEST(test_smooth_fade_is_continuous_in_velocity);
     RUN_TEST(test_interruption_callbacks);
     RUN_TEST(test_uninterruptible);
     RUN_TEST(test_linear_fade_curve);

@@ -1,6 +1,7 @@
--- A thousand foxes under one state machine: compressed clips, posed in blocks. `--set n=100` for
--- fewer, `--set lod=1` to pose far
--- foxes every second or fourth step, `--set anim.batch=off` for the plain path, `--set anim.pack=0` for raw keys.
+-- A thousand foxes under one state machine: compressed clips, posed in blocks.
+--   --set n=100            fewer
+--   --set lod=1            far foxes are posed every second or fourth step
+--   --set anim.batch=off   the plain path;  --set anim.pack=0   raw keys
 local foxes, step, jumps = {}, 0, 0
 
 local function make_machine(fox)
