@@ -2,10 +2,12 @@
 
 #include "anim/lab.h"
 #include "gfx/gfx_lab.h"
+#include "nav/lab.h"
 #include "phys/lab.h"
 #include "script/lab.h"
 
 const core_lab_kernel *const app_lab_kernels[] = {
     &core_lab_math, &core_lab_layout,   &phys_lab_motion, &phys_lab_broad, &gfx_lab_cluster,
-    &gfx_lab_frame, &script_lab_access, &anim_lab_pose,   &anim_lab_pack,  NULL,
+    &gfx_lab_frame, &script_lab_access, &anim_lab_pose,   &anim_lab_pack,  &nav_lab_search,
+    NULL,
 };
