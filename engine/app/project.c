@@ -48,8 +48,9 @@ static const char readme[] = "# %s\n"
 
 static const char luarc[] = "{\n"
                             "  \"runtime.version\": \"LuaJIT\",\n"
-                            "  \"diagnostics.globals\": [\"corsac\"]\n"
-                            "}\n";
+                            "  \"diagnostics.globals\": [\"corsac\"],\n"
+                            "  \"workspace.library\": [\"%s/scripts/types\"]\n"
+                            "}\n"; // where the stubs of this installation are
 
 static bool put(const char *folder, const char *name, const char *format, const char *title) {
     char path[APP_PATH_MAX], text[2048];
@@ -81,8 +82,10 @@ int app_command_new(int argc, const char *const *argv) {
         core_fail("corsac new: the folder's name '%s' must not hold quotes or backslashes", title);
         return 2;
     }
+    char home[APP_PATH_MAX] = ".";
+    app_home(home, sizeof home);
     bool ok = put(folder, "main.lua", main_lua, NULL) && put(folder, "conf.lua", conf_lua, title) &&
-              put(folder, "README.md", readme, title) && put(folder, ".luarc.json", luarc, NULL) &&
+              put(folder, "README.md", readme, title) && put(folder, ".luarc.json", luarc, home) &&
               put(folder, "assets/README.md", "Models, images and sounds go here.\n", NULL);
     if (!ok) {
         return 2;
