@@ -76,7 +76,7 @@ lab: all ## speed against accuracy, charted -> out/lab/report.html; LAB=quick: u
 	@$(if $(filter quick,$(LAB)),:,$(MAKE) lab-builds)
 	@$(OUT)/corsac lab $(if $(filter quick,$(LAB)),--quick)
 
-# The thesis "-Ofast because speed prevails" needs the engine built that way, apart from the products.
+# The thesis "speed prevails" needs the engine built with inexact arithmetic, apart from the products.
 .PHONY: lab-builds
 lab-builds:
 	@$(MAKE) OUT=build/lab-o3 OBJ=build/lab-o3/obj CFLAGS="-O3 -Wno-error" build/lab-o3/corsac

@@ -80,6 +80,9 @@ class Judge(unittest.TestCase):
                               sweep={}, methods={})
         rows = [row("soft", 1e-3, 1), row("soft", 1e-4, 2), row("old", 1e-3, 6)]
         self.assertEqual(judge.sentence(exp, rows), "At 1 mm sag, soft costs 1 ms: 6 times less than old.")
+        rows.append(row("worst", 9, 1))
+        self.assertEqual(judge.sentence(exp, rows),
+                         "At 1 mm sag, soft costs 1 ms: 6 times less than old (worst ends at 9 m).")
 
 
 class Maps(unittest.TestCase):

@@ -191,22 +191,24 @@ def scatter_sentence(exp, rows):
 
 
 def front_sentence(exp, rows):
-    """At an error that several methods reach, who is cheapest and by how much."""
-    reach = {}
+    """At the lowest error that two methods reach: who is cheapest and by how much, and who never gets there."""
+    best = {}
     for row in rows:
         if row["error"] and row["cost"]:
-            reach.setdefault(row["method"], []).append(row["error"]["median"])
-    if len(reach) < 2:
+            error = row["error"]["median"]
+            best[row["method"]] = min(error, best.get(row["method"], error))
+    if len(best) < 2:
         return ""
-    level = max(min(errors) for errors in reach.values())
-    costs = sorted((cheapest([r for r in rows if r["method"] == m], level), m) for m in reach)
-    (best, who), (worst, last) = costs[0], costs[-1]
+    level = sorted(best.values())[1]
     unit = exp.error.get("unit", "")
-    error = f"{amount(level, unit)} {exp.error.get('label', 'error')}"
-    if level == 0:
-        error = f"no {exp.error.get('label', 'error')} at all"
-    return (f"at {error}, {who} costs {amount(best, exp.cost.get('unit', ''))}: "
-            f"{worst / best:.3g} times less than {last}") if best else ""
+    reach = [m for m, error in best.items() if error <= level]
+    costs = sorted((cheapest([r for r in rows if r["method"] == m], level), m) for m in reach)
+    short = [f"{m} ends at {amount(error, unit)}" for m, error in best.items() if error > level]
+    (low, who), (high, last) = costs[0], costs[-1]
+    what = exp.error.get("label", "error")
+    return (f"at {'no ' + what + ' at all' if level == 0 else amount(level, unit) + ' ' + what}, {who} costs "
+            f"{amount(low, exp.cost.get('unit', ''))}: {high / low:.3g} times less than {last}"
+            + (f" ({', '.join(short)})" if short else "")) if low else ""
 
 
 def sentence(exp, rows):
