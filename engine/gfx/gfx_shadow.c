@@ -9,6 +9,8 @@
 
 // Texels round the picture of a cube face that neighbours cover too, so that filters find them.
 enum { FACE_BORDER = 4 };
+// Metres towards a sun within which casters keep their depth (for soft shadows).
+static const float FAR_CASTERS = 200.0f;
 
 // ---- views ----
 
@@ -67,6 +69,9 @@ static interval extent(const gfx_instances *s, core_vec3 along) {
     interval e = {1e30f, -1e30f};
     for (uint32_t i = 0; i < core_columns_count(&s->set); ++i) {
         float at = s->cx[i] * along.x + s->cy[i] * along.y + s->cz[i] * along.z;
+        if (!(core_absf(at) + s->cr[i] < 1e30f)) {
+            continue; // a transform that is no number hides no other shadow
+        }
         e.lo = CORE_MIN(e.lo, at - s->cr[i]);
         e.hi = CORE_MAX(e.hi, at + s->cr[i]);
     }
@@ -99,13 +104,20 @@ static void add_cascade(gfx_shadows *s, core_vec3 along, interval casters, core_
     radius = (snap(radius, radius / 64.0f) + radius / 64.0f) * (1.0f + 4.0f / (float)s->size);
     float texel = 2.0f * radius / (float)s->size;
     float x = snap(core_v3_dot(center, right), texel), y = snap(core_v3_dot(center, up), texel);
-    float from = casters.lo - 1.0f, range = CORE_MAX(casters.hi - casters.lo, 0.0f) + 2.0f;
+    // From the first caster to the last receiver, but not so far that depth loses its digits: what
+    // lies before is clamped to the near end and casts its shadow all the same.
+    float middle = core_v3_dot(center, along), first = middle - radius - FAR_CASTERS;
+    float last = middle + radius;
+    float from = CORE_MAX(casters.lo, first) - 1.0f, to = CORE_MIN(casters.hi, last) + 1.0f;
+    float range = CORE_MAX(to - from, 1.0f);
     core_vec3 eye = core_v3_add(core_v3_add(core_v3_scale(right, x), core_v3_scale(up, y)),
                                 core_v3_scale(along, from));
     gfx_camera_view(&v->view, eye, core_v3_add(eye, along), up);
     v->view.orthographic = true;
     v->view.projection = core_mat4_ortho(-radius, radius, -radius, radius, 0.0f, range);
     gfx_view_finish(&v->view);
+    const float anywhere[4] = {0.0f, 0.0f, 0.0f, 1.0f}; // casters before the near end stay
+    memcpy(v->view.plane[4], anywhere, sizeof anywhere);
     set_matrix(v);
     const float texels[4] = {texel, 0.0f, (float)s->size, source};
     const float depth[4] = {range, 0.0f, end, (float)(s->count - 1)};
@@ -261,10 +273,12 @@ bool gfx_shadows_draw(gfx_device *d, gfx_world *world) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_CLAMP);
     bool ok = true;
     for (uint32_t i = 0; i < s->count && ok; ++i) {
         ok = s->view[i].current || draw_layer(d, world, i, stride);
     }
+    glDisable(GL_DEPTH_CLAMP);
     gfx_stream_bind(&s->block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_SHADOWS, s->count * sizeof *block,
                     d->frame);
     glBindTextureUnit(GFX_TEX_SHADOW, s->texture);

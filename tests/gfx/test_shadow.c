@@ -114,6 +114,28 @@ static void test_sun_edges(void) {
     gfx_fixture_close(&f);
 }
 
+// A floor of a thousand kilometres, a thing of no size at all and a caster far above change
+// nothing.
+static void test_far_things_leave_shadows_alone(void) {
+    gfx_fixture f = open_floor();
+    gfx_add(f.world, "plane", core_v3(0, -0.01f, 0), core_v3(1e6f, 1, 1e6f), 1, 1, 1);
+    gfx_add(f.world, "box", core_v3(0, 0.5f, 0), core_v3(1, 1, 1), 1, 1, 1);
+    gfx_add(f.world, "box", core_v3(NAN, 0, 0), core_v3(1, 1, 1), 1, 1, 1);
+    gfx_add_sun(f.world, core_v3(1, -1, 0), 3.0f);
+    float *v = visibility(&f, "pcf");
+    TEST_ASSERT_FLOAT_WITHIN(floor_texel(&f), 1.5f, shadow_end(v));
+    for (int x = 0; x < SIZE / 4; ++x) {
+        TEST_ASSERT_FLOAT_WITHIN(1e-6f, 1.0f, v[SIZE * (SIZE / 2) + x]); // no acne
+    }
+    core_free(v);
+    // 2 km towards the sun: its shadow falls on the whole picture.
+    gfx_add(f.world, "box", core_v3(-2000, 2000, 0), core_v3(60, 1, 60), 1, 1, 1);
+    v = visibility(&f, "pcf");
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.0f, v[SIZE * (SIZE / 4) + SIZE / 4]);
+    core_free(v);
+    gfx_fixture_close(&f);
+}
+
 // The same cube under a point light or spot at (-1, 3): its shadow ends where the ray over its
 // upper right edge meets the floor.
 static void test_local_edges(void) {
@@ -234,6 +256,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_no_acne);
     RUN_TEST(test_sun_edges);
+    RUN_TEST(test_far_things_leave_shadows_alone);
     RUN_TEST(test_local_edges);
     RUN_TEST(test_soft_shadow_against_an_area_light);
     RUN_TEST(test_maps_are_kept);
