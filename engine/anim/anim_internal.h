@@ -193,8 +193,10 @@ core_handle anim_resource_add(anim_resources *set, void *item);
 core_arena *anim_scratch(anim_world *w, uint32_t worker);
 float *anim_scratch_pose(core_arena *arena, const anim_skeleton_res *s);
 
-// Nearest of `count` names that begin `stride` bytes apart, for error lines; "" when none is near.
-const char *anim_nearest(const char *name, const void *names, size_t stride, uint32_t count);
+// Fails with `state machine: WHAT "name"` and the nearest of `count` names that begin `stride`
+// bytes apart, when one is near.
+bool anim_unknown(const char *what, const char *name, const void *names, size_t stride,
+                  uint32_t count);
 
 // ---- poses as columns ----
 void anim_columns_from_pose(anim_pose in, uint32_t bones, uint32_t stride, float *out);

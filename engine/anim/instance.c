@@ -240,8 +240,7 @@ bool anim_instance_go(anim_world *w, anim_instance h, const char *state, float l
             return true;
         }
     }
-    return core_fail("state machine: no state \"%s\"; nearest is \"%s\"", state,
-                     anim_nearest(state, m->state, sizeof *m->state, m->state_count));
+    return anim_unknown("no state", state, m->state, sizeof *m->state, m->state_count);
 }
 
 bool anim_instance_set_time(anim_world *w, anim_instance h, float time) {
@@ -309,8 +308,7 @@ static bool find_parameter(const anim_world *w, uint32_t row, uint32_t layer, co
 
 static bool no_parameter(const anim_world *w, uint32_t row, const char *name) {
     const anim_machine_res *m = machine_of(w, nth_player(w, row, 0));
-    return m && core_fail("state machine: no parameter \"%s\"; nearest is \"%s\"", name,
-                          anim_nearest(name, m->parameter, CORE_NAME_MAX, m->parameter_count));
+    return m && anim_unknown("no parameter", name, m->parameter, CORE_NAME_MAX, m->parameter_count);
 }
 
 bool anim_instance_set_parameter(anim_world *w, anim_instance h, const char *name, float value) {
@@ -358,8 +356,8 @@ bool anim_instance_send(anim_world *w, anim_instance h, const char *event) {
         return found > 0;
     }
     const anim_machine_res *m = machine_of(w, nth_player(w, row, 0));
-    return m && core_fail("state machine: no transition listens to \"%s\"; nearest is \"%s\"",
-                          event, anim_nearest(event, m->event, CORE_NAME_MAX, m->event_count));
+    return m &&
+           anim_unknown("no transition listens to", event, m->event, CORE_NAME_MAX, m->event_count);
 }
 
 // ---- layers ----

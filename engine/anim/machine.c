@@ -23,8 +23,7 @@ static int32_t find_state(const anim_machine_res *m, const char *name) {
             return (int32_t)i;
         }
     }
-    core_fail("state machine: no state \"%s\"; nearest is \"%s\"", name,
-              anim_nearest(name, m->state, sizeof *m->state, m->state_count));
+    anim_unknown("no state", name, m->state, sizeof *m->state, m->state_count);
     return -1;
 }
 
@@ -47,9 +46,8 @@ static bool parameter_number(const anim_machine_res *m, const char *name, uint32
             return true;
         }
     }
-    return core_fail(
-        "state machine: no parameter \"%s\"; nearest is \"%s\"", name ? name : "",
-        anim_nearest(name ? name : "", m->parameter, CORE_NAME_MAX, m->parameter_count));
+    return anim_unknown("no parameter", name ? name : "", m->parameter, CORE_NAME_MAX,
+                        m->parameter_count);
 }
 
 static bool add_points(const anim_world *w, anim_machine_res *m, anim_state *s,

@@ -207,12 +207,14 @@ float *anim_scratch_pose(core_arena *arena, const anim_skeleton_res *s) {
     return CORE_ARENA_ARRAY(arena, float, ANIM_COMPONENTS * s->stride);
 }
 
-const char *anim_nearest(const char *name, const void *names, size_t stride, uint32_t count) {
-    const char *list[ANIM_MAX_BONES];
-    uint32_t n = CORE_MIN(count, ANIM_MAX_BONES);
+bool anim_unknown(const char *what, const char *name, const void *names, size_t stride,
+                  uint32_t count) {
+    const char *list[ANIM_MAX_STATES];
+    uint32_t n = CORE_MIN(count, ANIM_MAX_STATES);
     for (uint32_t i = 0; i < n; i++) {
         list[i] = (const char *)names + i * stride;
     }
     const char *near = core_nearest(name, list, n);
-    return near ? near : "";
+    return near ? core_fail("state machine: %s \"%s\"; nearest is \"%s\"", what, name, near)
+                : core_fail("state machine: %s \"%s\"", what, name);
 }
