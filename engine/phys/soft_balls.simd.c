@@ -34,14 +34,14 @@ static void warm(ball_block *c, int k, soft_bodies *s, bool fixed) {
     }
 }
 
-static vf gap_now(const ball_block *c, int k, const soft_bodies *s, rows3 n, bool fixed) {
+ROWS_INLINE vf gap_now(const ball_block *c, int k, const soft_bodies *s, rows3 n, bool fixed) {
     rows3 d, pa = rows_gather(s->moved, c->a + k, 0);
     d = fixed ? rows_zero() : rows_gather(s->moved, c->b + k, 0);
     return vf_add(vf_load(c->gap + k), rows_dot(rows_sub(d, pa), n));
 }
 
 // Remembers the fastest approach that the contact had to stop: what restitution gives back.
-static void note_approach(ball_block *c, int k, vf impulse, vf vn) {
+ROWS_INLINE void note_approach(ball_block *c, int k, vf impulse, vf vn) {
     vf fast = vf_load(c->approach + k);
     vm hit = vf_gt(impulse, vf_zero());
     vf_store(c->approach + k, vf_select(hit, vf_min(fast, vn), fast));
@@ -71,7 +71,7 @@ static void solve(ball_block *c, int k, soft_bodies *s, const soft_spring *sprin
 
 // Holds the turn of one against the other by at most the resistance's torque, as friction holds
 // their slip.
-static void resist_rolling(ball_block *c, int k, vf push, rows3 *wa, rows3 *wb, vf ia, vf ib) {
+ROWS_INLINE void resist_rolling(ball_block *c, int k, vf push, rows3 *wa, rows3 *wb, vf ia, vf ib) {
     rows3 was = rows_load(c->rx + k, c->ry + k, c->rz + k);
     rows3 r = rows_mad(was, rows_sub(*wa, *wb), rows_inverse(vf_add(ia, ib)));
     vf length = vf_sqrt(rows_dot(r, r)), limit = vf_mul(vf_load(c->roll + k), push);

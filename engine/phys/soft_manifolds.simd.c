@@ -8,17 +8,21 @@ typedef struct motion { // of both bodies
     rows3 va, wa, vb, wb;
 } motion;
 
-static rows3 normal_of(const manifold_block *c, int k) {
+ROWS_INLINE rows3 normal_of(const manifold_block *c, int k) {
     return rows_load(c->nx + k, c->ny + k, c->nz + k);
 }
-static rows3 arm_a(const soft_arm *r, int k) { return rows_load(r->ax + k, r->ay + k, r->az + k); }
-static rows3 arm_b(const soft_arm *r, int k) { return rows_load(r->bx + k, r->by + k, r->bz + k); }
+ROWS_INLINE rows3 arm_a(const soft_arm *r, int k) {
+    return rows_load(r->ax + k, r->ay + k, r->az + k);
+}
+ROWS_INLINE rows3 arm_b(const soft_arm *r, int k) {
+    return rows_load(r->bx + k, r->by + k, r->bz + k);
+}
 
-static motion gather(const manifold_block *c, int k, const float *from) {
+ROWS_INLINE motion gather(const manifold_block *c, int k, const float *from) {
     return (motion){rows_gather(from, c->a + k, 0), rows_gather(from, c->a + k, 4),
                     rows_gather(from, c->b + k, 0), rows_gather(from, c->b + k, 4)};
 }
-static void scatter(const manifold_block *c, int k, float *to, const motion *m, bool fixed) {
+ROWS_INLINE void scatter(const manifold_block *c, int k, float *to, const motion *m, bool fixed) {
     rows_scatter(to, c->a + k, 0, m->va);
     rows_scatter(to, c->a + k, 4, m->wa);
     if (!fixed) {
@@ -28,15 +32,15 @@ static void scatter(const manifold_block *c, int k, float *to, const motion *m, 
 }
 
 // Relative speed along an arm's direction, whose linear part is given.
-static vf speed(const soft_arm *r, int k, const motion *m, vf linear) {
+ROWS_INLINE vf speed(const soft_arm *r, int k, const motion *m, vf linear) {
     vf turn = vf_sub(rows_dot(arm_b(r, k), m->wb), rows_dot(arm_a(r, k), m->wa));
     return vf_add(linear, turn);
 }
-static void spin(const soft_arm *r, int k, motion *m, vf d) {
+ROWS_INLINE void spin(const soft_arm *r, int k, motion *m, vf d) {
     m->wa = rows_msub(m->wa, rows_load(r->iax + k, r->iay + k, r->iaz + k), d);
     m->wb = rows_mad(m->wb, rows_load(r->ibx + k, r->iby + k, r->ibz + k), d);
 }
-static void thrust(const manifold_block *c, int k, motion *m, rows3 axis, vf d) {
+ROWS_INLINE void thrust(const manifold_block *c, int k, motion *m, rows3 axis, vf d) {
     m->va = rows_msub(m->va, axis, vf_mul(d, vf_load(c->ima + k)));
     m->vb = rows_mad(m->vb, axis, vf_mul(d, vf_load(c->imb + k)));
 }
@@ -44,7 +48,7 @@ static void thrust(const manifold_block *c, int k, motion *m, rows3 axis, vf d) 
 typedef struct inertia {
     rows3 diagonal, off; // xx yy zz, xy xz yz
 } inertia;
-static rows3 turn_by(const inertia *i, rows3 v) {
+ROWS_INLINE rows3 turn_by(const inertia *i, rows3 v) {
     return (rows3){
         vf_add(vf_add(vf_mul(i->diagonal.x, v.x), vf_mul(i->off.x, v.y)), vf_mul(i->off.y, v.z)),
         vf_add(vf_add(vf_mul(i->off.x, v.x), vf_mul(i->diagonal.y, v.y)), vf_mul(i->off.z, v.z)),
@@ -52,8 +56,8 @@ static rows3 turn_by(const inertia *i, rows3 v) {
 }
 
 // Fills an arm for the direction at anchors ra, rb. Returns its 1 / mass.
-static vf make_arm(soft_arm *r, int k, rows3 axis, rows3 ra, rows3 rb, const inertia *ia,
-                   const inertia *ib, vf mass) {
+ROWS_INLINE vf make_arm(soft_arm *r, int k, rows3 axis, rows3 ra, rows3 rb, const inertia *ia,
+                        const inertia *ib, vf mass) {
     rows3 a = rows_cross(ra, axis), b = rows_cross(rb, axis), ta = turn_by(ia, a),
           tb = turn_by(ib, b);
     rows_store(r->ax + k, r->ay + k, r->az + k, a);
@@ -120,7 +124,7 @@ static void prepare(manifold_block *c, int k, const soft_bodies *s) {
     vf_store(c->twist_mass + k, rows_inverse(vf_add(rows_dot(wa, n), rows_dot(wb, n))));
 }
 
-static void twist_by(const manifold_block *c, int k, motion *m, vf d) {
+ROWS_INLINE void twist_by(const manifold_block *c, int k, motion *m, vf d) {
     m->wa = rows_msub(m->wa, rows_load(c->wax + k, c->way + k, c->waz + k), d);
     m->wb = rows_mad(m->wb, rows_load(c->wbx + k, c->wby + k, c->wbz + k), d);
 }
@@ -146,8 +150,8 @@ static void warm(manifold_block *c, int k, soft_bodies *s, bool fixed) {
 }
 
 // One sweep over the four points. Returns the sum of the impulses.
-static vf sweep(manifold_block *c, int k, const soft_bodies *s, const soft_spring *spring,
-                motion *m, bool correct) {
+ROWS_INLINE vf sweep(manifold_block *c, int k, const soft_bodies *s, const soft_spring *spring,
+                     motion *m, bool correct) {
     rows3 n = normal_of(c, k);
     motion way = gather(c, k, s->moved);
     vf linear = rows_dot(rows_sub(m->vb, m->va), n), gained = vf_zero(), sum = vf_zero();
@@ -181,7 +185,7 @@ static vf sweep(manifold_block *c, int k, const soft_bodies *s, const soft_sprin
     return sum;
 }
 
-static void rub(manifold_block *c, int k, motion *m, vf normal_sum) {
+ROWS_INLINE void rub(manifold_block *c, int k, motion *m, vf normal_sum) {
     rows3 dv = rows_sub(m->vb, m->va), n = normal_of(c, k);
     rows3 t1 = rows_load(c->tx[0] + k, c->ty[0] + k, c->tz[0] + k);
     rows3 t2 = rows_load(c->tx[1] + k, c->ty[1] + k, c->tz[1] + k);
