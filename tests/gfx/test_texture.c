@@ -86,7 +86,8 @@ static void test_base_color_is_srgb(void) {
     gfx_instance_destroy(f.world, i);
     add_plane(&m, 0);
     pixel(8, 8, plain);
-    TEST_ASSERT_FLOAT_WITHIN(3e-3f, plain[0], mapped[0]);
+    // The grey of the map lies 0.0027 off 0.5, and chips decode sRGB to about a quarter of a step.
+    TEST_ASSERT_FLOAT_WITHIN(4e-3f, plain[0], mapped[0]);
 }
 
 static void test_mask_cuts_and_blend_mixes(void) {
