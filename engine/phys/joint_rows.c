@@ -359,18 +359,18 @@ bool joint_rows_upper(const soft_joints *s, const joint_work *k) {
     return x - j->lower[k->joint] > j->upper[k->joint] - x;
 }
 
-float phys_joint_value(const phys_world *w, phys_joint joint) {
+bool phys_joint_coordinate(const phys_world *w, phys_joint joint, float *out) {
     uint32_t i = core_columns_row(&w->joints.set, joint);
     if (i == CORE_NO_ROW) {
-        core_fail("phys joint: value of a stale or null handle (%u:%u)", joint.index,
-                  joint.generation);
-        return 0.0f;
+        return core_fail("phys joint: value of a stale or null handle (%u:%u)", joint.index,
+                         joint.generation);
     }
     uint8_t type = w->joints.type[i];
     if (type != PHYS_JOINT_DISTANCE && type != PHYS_JOINT_REVOLUTE &&
         type != PHYS_JOINT_PRISMATIC && type != PHYS_JOINT_BALL) {
-        core_fail("phys joint: only ball, distance, revolute and prismatic joints have a value");
-        return 0.0f;
+        return core_fail("phys joint: type %d has no value, expected ball, distance, revolute or "
+                         "prismatic",
+                         (int)type);
     }
     joint_body body[2];
     for (int k = 0; k < 2; k++) {
@@ -384,5 +384,6 @@ float phys_joint_value(const phys_world *w, phys_joint joint) {
     joint_work k = {.joint = i, .a = 0, .b = 1, .type = type};
     pose p = make_pose(&s, &k);
     joint_row free;
-    return coordinate(type, &free, &p);
+    *out = coordinate(type, &free, &p);
+    return true;
 }

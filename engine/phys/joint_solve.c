@@ -320,6 +320,19 @@ soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const ui
     return s;
 }
 
+// Adds what a joint gave b in this substep: the load is the mean over a step.
+static void sum_load(soft_joints *s, uint32_t i) {
+    joint_work *k = &s->work[i];
+    core_vec3 force = {0}, torque = {0};
+    for (uint32_t r = 0; r < (uint32_t)k->hard + k->soft; r++) {
+        const float *row = k->row[r].j, j = k->row[r].impulse;
+        force = core_v3_mad(force, core_v3(row[6], row[7], row[8]), j);
+        torque = core_v3_mad(torque, core_v3(row[9], row[10], row[11]), j);
+    }
+    k->force = core_v3_add(k->force, force);
+    k->torque = core_v3_add(k->torque, core_v3_sub(torque, core_v3_cross(k->arm_b, force)));
+}
+
 static void run_colors(soft_joints *s, soft_pass pass) {
     pass_job job = {s, 0, pass};
     for (uint32_t c = 0; c <= COLORS; c++) {
@@ -339,6 +352,11 @@ void phys_soft_joints_pass(soft_joints *s, soft_pass pass) {
     }
     core_jobs_for(s->world->jobs, s->tree.trees, 1, run_trees, &(pass_job){s, 0, pass});
     each(s, s->body_count, 512, note_end);
+    if (pass == SOFT_RELAX) {
+        move_impulses(s, false);
+        each(s, s->count, 256, sum_load);
+        s->time += s->h;
+    }
 }
 
 static void turn_pivots(soft_joints *s) {
@@ -365,20 +383,15 @@ void phys_soft_joints_move(soft_joints *s) {
 
 void phys_soft_joints_end(soft_joints *s) {
     phys_joints *j = &s->world->joints;
-    move_impulses(s, false);
     for (uint32_t i = 0; i < s->count; i++) {
         const joint_work *k = &s->work[i];
         phys_joint_impulse *stored = &j->impulse[k->joint];
-        core_vec3 force = {0}, torque = {0};
         for (uint32_t r = 0; r < (uint32_t)k->hard + k->soft; r++) {
-            const float *row = k->row[r].j, f = k->row[r].impulse / s->h;
             bool soft = r >= k->hard;
             *(soft ? &stored->soft[r - k->hard] : &stored->hard[r]) =
                 r == k->hard && k->upper ? -k->row[r].impulse : k->row[r].impulse;
-            force = core_v3_mad(force, core_v3(row[6], row[7], row[8]), f);
-            torque = core_v3_mad(torque, core_v3(row[9], row[10], row[11]), f);
         }
-        j->force[k->joint] = force;
-        j->torque[k->joint] = core_v3_sub(torque, core_v3_cross(k->arm_b, force));
+        j->force[k->joint] = core_v3_scale(k->force, 1.0f / s->time);
+        j->torque[k->joint] = core_v3_scale(k->torque, 1.0f / s->time);
     }
 }

@@ -38,7 +38,8 @@ typedef struct joint_work {
     bool blocked; // has a lane
     bool upper;   // side of the limit in this step
     uint32_t block, lane;
-    core_vec3 arm_b;                                  // from the centre of b to its anchor
+    core_vec3 force, torque; // impulses on b, sum over the substeps so far, N s and N m s
+    core_vec3 arm_b;         // from the centre of b to its anchor
     joint_row row[PHYS_JOINT_HARD + PHYS_JOINT_SOFT]; // hard ones, then soft ones
 } joint_work;
 
@@ -81,7 +82,7 @@ typedef struct joint_tree {
 typedef struct soft_joints {
     phys_world *world;
     soft_bodies *bodies;
-    float h;
+    float h, time; // s: of a substep; of those done
     joint_body *body;
     uint32_t body_count;
     bool *jointed; // by place

@@ -285,11 +285,11 @@ bool phys_joint_destroy(phys_world *world, phys_joint joint);
 bool phys_joint_alive(const phys_world *world, phys_joint joint);
 uint32_t phys_joint_count(const phys_world *world);
 uint64_t phys_joint_user(const phys_world *world, phys_joint joint);
-// What the joint did to b in the last substep, force at the anchor (N, N m, world axes).
+// What the joint did to b, mean over the last step, force at the anchor (N, N m, world axes).
 bool phys_joint_force(const phys_world *world, phys_joint joint, core_vec3 *force,
                       core_vec3 *torque);
-// The coordinate (see above) in the present pose; 0 + core_fail for types without one.
-float phys_joint_value(const phys_world *world, phys_joint joint);
+// The coordinate (see above) in the present pose. False + core_fail for types without one.
+bool phys_joint_coordinate(const phys_world *world, phys_joint joint, float *out);
 bool phys_joint_set_motor(phys_world *world, phys_joint joint, bool on, float speed, float max);
 bool phys_joint_set_limits(phys_world *world, phys_joint joint, bool on, float lower, float upper);
 bool phys_joint_set_spring(phys_world *world, phys_joint joint, float hertz, float damping_ratio,

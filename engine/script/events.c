@@ -8,7 +8,7 @@
 
 // Registry tables by the addresses of these: handle's bits -> {function, function, function}; the
 // third is the list of destroyed triggers.
-static const char callback_keys[2], gone_key;
+static const char callback_keys[3], gone_key;
 
 static void push_table(lua_State *L, const char *key) {
     lua_pushlightuserdata(L, (void *)(uintptr_t)key);
@@ -151,6 +151,20 @@ static bool on_contact(script *s, const phys_event *e, phys_body self, phys_body
     return call(s, 6);
 }
 
+static bool on_break(script *s, const phys_event *e) {
+    if (!push_function(s->L, SCRIPT_ON_BREAK, e->joint, 1)) {
+        return true;
+    }
+    push_table(s->L, &callback_keys[SCRIPT_ON_BREAK]);
+    push_bits(s->L, e->joint);
+    lua_pushnil(s->L);
+    lua_rawset(s->L, -3);
+    lua_pop(s->L, 1);
+    push_body_or_nil(s, e->a);
+    push_body_or_nil(s, e->b);
+    return call(s, 2);
+}
+
 static void tell(script *s) {
     phys_world *world = scene_phys_if(s->scene);
     uint32_t count = 0;
@@ -166,6 +180,8 @@ static void tell(script *s) {
     for (uint32_t i = 0; i < count && go; i++) {
         if (event[i].kind <= PHYS_TRIGGER_EXIT) {
             go = on_trigger(s, &event[i]);
+        } else if (event[i].kind == PHYS_JOINT_BREAK) {
+            go = on_break(s, &event[i]);
         } else {
             go = on_contact(s, &event[i], event[i].a, event[i].b, 1.0f) &&
                  on_contact(s, &event[i], event[i].b, event[i].a, -1.0f);

@@ -207,6 +207,49 @@ local Field = {}
 ---Removes it.
 function Field:destroy() end
 
+---What holds two bodies, or a body and the world.
+---@class corsac.Joint
+local Joint = {}
+
+---What it did to body b at the anchor, mean over the last step.
+---@return number x
+---@return number y
+---@return number z
+function Joint:getForce() end
+
+---The same about the anchor.
+---@return number x
+---@return number y
+---@return number z
+function Joint:getTorque() end
+
+---Angle in rad (revolute; ball: twist), way in m (prismatic) or length in m (distance).
+---@return number value
+function Joint:getValue() end
+
+---Drives distance, revolute and prismatic joints.
+---@param speed number of b against a
+---@param max number most it gives; 0 turns it off
+function Joint:setMotor(speed, max) end
+
+---Range of getValue.
+---@param lower number
+---@param upper number
+function Joint:setLimits(lower, upper) end
+
+---Spring towards a value of getValue.
+---@param hertz number 0 turns it off
+---@param dampingRatio? number 1 comes to rest soonest
+---@param rest? number where it comes to rest
+function Joint:setSpring(hertz, dampingRatio, rest) end
+
+---Whether it broke or was destroyed; every other method then raises an error.
+---@return boolean destroyed
+function Joint:isDestroyed() end
+
+---Removes it; onBreak is not called.
+function Joint:destroy() end
+
 ---A source of light.
 ---@class corsac.Light
 local Light = {}
@@ -1355,6 +1398,40 @@ function corsac.phys.closest(x, y, z, radius, options) end
 ---@param options? corsac.phys.overlapSphere.options what is seen
 ---@return corsac.Body[] bodies
 function corsac.phys.overlapSphere(x, y, z, radius, options) end
+
+---@class corsac.phys.newJoint.options
+---@field type "fixed"|"ball"|"distance"|"revolute"|"prismatic"|"universal"|"pivot"|"pulley" kind of joint
+---@field a? corsac.Body without, the world
+---@field b? corsac.Body without, the world
+---@field anchor? number[] place in the world; distance, pulley: on a, m
+---@field anchorB? number[] distance, pulley: on b, m
+---@field axis? number[] direction in the world
+---@field axisB? number[] universal (+x), pivot (axis): that of b
+---@field lower? number ball (twist), distance, revolute, prismatic, m or rad
+---@field upper? number with lower; alone for a rope, m or rad
+---@field cone? number ball: largest lean of the axis; 0 for none, rad
+---@field motorSpeed? number of b against a, m/s or rad/s
+---@field motorMax? number most the motor gives, N or N m
+---@field hertz? number spring; 0 for none, Hz
+---@field rest? number of the spring; distance: 0 is the present one, m or rad
+---@field dampingRatio? number of the spring
+---@field damping? number without a spring as well, N s/m or N m s/rad
+---@field ratio? number pivot: turns of a for one of b; pulley: pull on b over a
+---@field groundA? number[] pulley: wheel above a, m
+---@field groundB? number[] pulley: wheel above b, m
+---@field breakForce? number breaks beyond; 0 for never, N
+---@field breakTorque? number breaks beyond; 0 for never, N m
+---@field collide? boolean a and b touch as if not joined
+---@field onBreak? function called with a and b (nil: the world or destroyed) when it breaks or one is destroyed
+
+---Joins two bodies, or a body and the world.
+---@param options corsac.phys.newJoint.options the joint
+---@return corsac.Joint joint
+function corsac.phys.newJoint(options) end
+
+---How many joints the world has.
+---@return integer count
+function corsac.phys.getJointCount() end
 
 ---Camera, lights and what is drawn over the frame.
 corsac.gfx = {}
