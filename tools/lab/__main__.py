@@ -85,7 +85,10 @@ def rows_of(exp, accuracy, timing):
 def program_of(args, exp, label):
     """The program that runs a method: the default build, or one built with other flags."""
     name = exp.methods[label].get("binary")
-    return str(ROOT / exp.binaries[name]) if name else args.corsac
+    program = ROOT / exp.binaries[name] if name else Path(args.corsac)
+    if not program.exists():
+        raise experiment.BadExperiment(f"{program} is missing: `make lab-builds` builds it")
+    return str(program)
 
 
 def run_experiment(args, exp, client):
