@@ -25,7 +25,7 @@ enum {
 
 // Points are kept while their bodies moved less than this to each other (m) and each turned less
 // than this (cosine of half the angle, 5 degrees).
-#define PHYS_KEEP_DISTANCE 0.02f
+#define PHYS_KEEP_DISTANCE 0.005f
 #define PHYS_KEEP_COSINE   0.99905f
 #define PHYS_APART         1e30f // separation of a pair out of reach
 #define PHYS_FAST          0.05f // m: pairs that approach by more in a step are swept unless they touch
