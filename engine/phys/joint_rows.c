@@ -3,9 +3,8 @@
 
 #include <string.h>
 
-// Part of the error that a substep takes back. Trees answer exactly, so all of it; loops share.
+// Part of the error that a substep takes back: trees answer exactly, so all of it.
 #define RATE_DIRECT 1.0f
-#define RATE_LOOP   0.2f
 #define RATE_LIMIT  0.5f
 #define SPEED_MAX   30.0f // m/s or rad/s of correction
 
@@ -182,7 +181,7 @@ static void hard_rows(const soft_joints *s, joint_work *k, const pose *p) {
     default:
         point_rows(r, p);
     }
-    float rate = (k->direct ? RATE_DIRECT : RATE_LOOP) / s->h;
+    float rate = (k->direct ? RATE_DIRECT : JOINT_RATE_LOOP) / s->h;
     for (uint32_t i = 0; i < k->hard; i++) {
         joint_row *row = &k->row[i];
         row->bias = CORE_CLAMP(row->error * rate, -SPEED_MAX, SPEED_MAX);

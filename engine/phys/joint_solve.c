@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#define SWEEPS 2   // over what is left to iteration
+#define SWEEPS 4   // over what is left to iteration
 #define COLORS 64u // the last is for bodies with more joints than colours, one joint a block
 
 // joint_body of a row of bodies, made at first sight.
@@ -29,11 +29,23 @@ static uint32_t body_of(soft_joints *s, uint32_t *known, const uint32_t *index, 
     return i;
 }
 
+static void put3(float *out, core_vec3 v) {
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
 static void update_body(soft_joints *s, uint32_t i) {
     joint_body *b = &s->body[i];
     const float *m = s->bodies->moved + (size_t)b->place * 8;
     b->center = core_v3_add(b->center0, core_v3(m[0], m[1], m[2]));
     b->q = b->placed ? phys_turned(b->q0, core_v3(m[4], m[5], m[6])) : b->q0;
+    if (b->placed) {
+        float *p = s->poses.pose + (size_t)b->place * 8;
+        put3(p, b->center);
+        put3(p + 4, core_v3(b->q.x, b->q.y, b->q.z));
+        s->poses.real[(size_t)b->place * 8] = b->q.w;
+    }
 }
 
 static bool on_level(const phys_bodies *b, uint32_t a, uint32_t o, uint32_t level) {
@@ -62,6 +74,11 @@ static void collect(soft_joints *s, const uint32_t *index, uint32_t level) {
     s->jointed = CORE_ARENA_ARRAY(arena, bool, s->bodies->count + 1);
     s->work = CORE_ARENA_ARRAY(arena, joint_work, joints);
     memset(s->jointed, 0, s->bodies->count + 1);
+    size_t floats = ((size_t)s->bodies->count + 1) * 8;
+    s->poses.pose = CORE_ARENA_ARRAY(arena, float, floats);
+    s->poses.real = CORE_ARENA_ARRAY(arena, float, floats);
+    memset(s->poses.pose, 0, floats * sizeof(float));
+    memset(s->poses.real, 0, floats * sizeof(float));
     uint32_t *known = CORE_ARENA_ARRAY(arena, uint32_t, n + 1);
     memset(known, 0, (n + 1) * sizeof *known);
     s->body[0] = (joint_body){.row = CORE_NO_ROW,
@@ -84,15 +101,15 @@ static void collect(soft_joints *s, const uint32_t *index, uint32_t level) {
     }
 }
 
-static void color(soft_joints *s, uint32_t *lanes) {
+// First free colour of both bodies; blocks of rows and of points have colours of their own.
+static void color(soft_joints *s, bool points, uint32_t *lanes) {
     core_arena *arena = &s->world->scratch;
     size_t mark = core_arena_mark(arena);
     uint64_t *used = CORE_ARENA_ARRAY(arena, uint64_t, s->body_count);
     memset(used, 0, s->body_count * sizeof *used);
     for (uint32_t i = 0; i < s->count; i++) {
         joint_work *k = &s->work[i];
-        k->blocked = k->soft != 0 || !k->direct;
-        if (!k->blocked) {
+        if (!(points ? k->pointed : k->blocked)) {
             continue;
         }
         bool ma = s->body[k->a].mobile, mb = s->body[k->b].mobile;
@@ -108,38 +125,88 @@ static void color(soft_joints *s, uint32_t *lanes) {
     core_arena_rewind(arena, mark);
 }
 
-static void make_blocks(soft_joints *s) {
+// Numbers the blocks and gives each joint its own. Returns the first block of each colour.
+static uint32_t *place_lanes(soft_joints *s, bool points) {
     uint32_t lanes[COLORS + 1] = {0}, blocks = 0;
-    color(s, lanes);
-    s->first = CORE_ARENA_ARRAY(&s->world->scratch, uint32_t, COLORS + 2);
+    color(s, points, lanes);
+    uint32_t *first = CORE_ARENA_ARRAY(&s->world->scratch, uint32_t, COLORS + 2);
     for (uint32_t c = 0; c <= COLORS; c++) {
-        s->first[c] = blocks;
+        first[c] = blocks;
         blocks += c < COLORS ? (lanes[c] + SOFT_LANES - 1) / SOFT_LANES : lanes[c];
     }
-    s->first[COLORS + 1] = blocks;
-    s->block = CORE_ARENA_ARRAY(&s->world->scratch, joint_block, blocks + 1);
-    memset(s->block, 0, blocks * sizeof *s->block);
-    for (uint32_t i = 0; i < blocks; i++) {
-        for (int k = 0; k < SOFT_LANES; k++) {
-            int32_t none = (int32_t)s->bodies->count;
-            joint_block *b = &s->block[i];
-            b->a[k] = b->b[k] = b->to_a[k] = b->to_b[k] = none;
-        }
-    }
+    first[COLORS + 1] = blocks;
     for (uint32_t i = 0; i < s->count; i++) {
         joint_work *k = &s->work[i];
-        if (k->blocked) {
+        if (points ? k->pointed : k->blocked) {
             uint32_t c = k->block, lane = k->lane;
-            k->block = s->first[c] + (c < COLORS ? lane / SOFT_LANES : lane);
+            k->block = first[c] + (c < COLORS ? lane / SOFT_LANES : lane);
             k->lane = c < COLORS ? lane % SOFT_LANES : 0;
+        }
+    }
+    return first;
+}
+
+// The heads of both kinds of blocks are alike: a, b, to_a, to_b.
+static void clear_blocks(const soft_joints *s, void *blocks, uint32_t count, size_t size) {
+    memset(blocks, 0, count * size);
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t *index = (int32_t *)((uint8_t *)blocks + i * size);
+        for (int k = 0; k < 4 * SOFT_LANES; k++) {
+            index[k] = (int32_t)s->bodies->count;
+        }
+    }
+}
+
+static void place_bodies(const soft_joints *s, const joint_work *k, int32_t *index, float *ima,
+                         float *imb) {
+    const joint_body *p = &s->body[k->a], *q = &s->body[k->b];
+    int32_t none = (int32_t)s->bodies->count;
+    index[k->lane] = (int32_t)p->place;
+    index[SOFT_LANES + k->lane] = (int32_t)q->place;
+    index[2 * SOFT_LANES + k->lane] = p->mobile ? (int32_t)p->place : none;
+    index[3 * SOFT_LANES + k->lane] = q->mobile ? (int32_t)q->place : none;
+    ima[k->lane] = p->im;
+    imb[k->lane] = q->im;
+}
+
+// An arm, or the place in the world when the body has no pose in lanes.
+static core_vec3 lane_anchor(const soft_joints *s, uint32_t body, core_vec3 local) {
+    const joint_body *b = &s->body[body];
+    return b->placed ? local : core_v3_add(b->center0, phys_rotate(b->q0, local));
+}
+
+static void make_points(soft_joints *s) {
+    const phys_joints *j = &s->world->joints;
+    s->first_point = place_lanes(s, true);
+    uint32_t blocks = s->first_point[COLORS + 1];
+    s->point = CORE_ARENA_ARRAY(&s->world->scratch, joint_points, blocks + 1);
+    clear_blocks(s, s->point, blocks, sizeof *s->point);
+    for (uint32_t i = 0; i < s->count; i++) {
+        const joint_work *k = &s->work[i];
+        if (k->pointed) {
+            joint_points *p = &s->point[k->block];
+            place_bodies(s, k, p->a, p->ima, p->imb);
+            core_vec3 la = lane_anchor(s, k->a, j->la[k->joint]);
+            core_vec3 lb = lane_anchor(s, k->b, j->lb[k->joint]);
+            for (int n = 0; n < 3; n++) {
+                p->la[n][k->lane] = phys_comp(la, n);
+                p->lb[n][k->lane] = phys_comp(lb, n);
+                p->impulse[n][k->lane] = j->impulse[k->joint].hard[n];
+            }
+        }
+    }
+}
+
+static void make_blocks(soft_joints *s) {
+    s->first = place_lanes(s, false);
+    uint32_t blocks = s->first[COLORS + 1];
+    s->block = CORE_ARENA_ARRAY(&s->world->scratch, joint_block, blocks + 1);
+    clear_blocks(s, s->block, blocks, sizeof *s->block);
+    for (uint32_t i = 0; i < s->count; i++) {
+        const joint_work *k = &s->work[i];
+        if (k->blocked) {
             joint_block *b = &s->block[k->block];
-            const joint_body *p = &s->body[k->a], *q = &s->body[k->b];
-            b->a[k->lane] = (int32_t)p->place;
-            b->b[k->lane] = (int32_t)q->place;
-            b->to_a[k->lane] = (int32_t)(p->mobile ? p->place : s->bodies->count);
-            b->to_b[k->lane] = (int32_t)(q->mobile ? q->place : s->bodies->count);
-            b->ima[k->lane] = p->im;
-            b->imb[k->lane] = q->im;
+            place_bodies(s, k, b->a, b->ima, b->imb);
             b->hard_count = CORE_MAX(b->hard_count, k->direct ? 0u : k->hard);
             b->soft_count = CORE_MAX(b->soft_count, (uint32_t)k->soft);
         }
@@ -212,6 +279,9 @@ static void fill_inverse(const soft_joints *s, const joint_work *k, joint_block 
 
 static void refresh(soft_joints *s, uint32_t i) {
     joint_work *k = &s->work[i];
+    if (k->pointed) {
+        return;
+    }
     joint_rows_make(s, k);
     if (!k->blocked) {
         return;
@@ -249,6 +319,7 @@ typedef struct pass_job {
     soft_joints *s;
     uint32_t first;
     soft_pass pass;
+    bool prepare;
 } pass_job;
 static void run_blocks(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     (void)chunk;
@@ -256,6 +327,19 @@ static void run_blocks(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, 
     const pass_job *job = ctx;
     CORE_SIMD_SELECT(phys_joint_blocks)
     (job->s->block + job->first + begin, end - begin, job->s->bodies, job->pass);
+}
+static void run_points(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const pass_job *job = ctx;
+    const soft_joints *s = job->s;
+    CORE_SIMD_SELECT(phys_joint_points)
+    (s->point + job->first + begin, end - begin, s->bodies, job->prepare ? &s->poses : NULL,
+     job->pass, 1.0f / s->h);
+}
+static void prepare_points(soft_joints *s) {
+    core_jobs_for(s->world->jobs, s->first_point[COLORS + 1], 8, run_points,
+                  &(pass_job){.s = s, .prepare = true});
 }
 static void run_trees(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     (void)chunk;
@@ -310,8 +394,15 @@ soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const ui
         k->upper = (w->joints.flags[k->joint] & PHYS_JOINT_LIMITED) && joint_rows_upper(s, k);
     }
     joint_tree_build(s);
+    for (uint32_t i = 0; i < s->count; i++) {
+        joint_work *k = &s->work[i];
+        k->pointed = k->type == PHYS_JOINT_BALL && k->soft == 0 && !k->direct;
+        k->blocked = !k->pointed && (k->soft != 0 || !k->direct);
+    }
+    make_points(s);
     make_blocks(s);
     each(s, s->count, 64, refresh);
+    prepare_points(s);
     each(s, s->tree.trees, 1, joint_tree_factor);
     for (uint32_t i = 0; i < s->count; i++) {
         load_impulses(s, &s->work[i]);
@@ -324,6 +415,15 @@ soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const ui
 static void sum_load(soft_joints *s, uint32_t i) {
     joint_work *k = &s->work[i];
     core_vec3 force = {0}, torque = {0};
+    if (k->pointed) { // no torque about the anchor
+        const joint_points *p = &s->point[k->block];
+        force = core_v3(p->impulse[0][k->lane], p->impulse[1][k->lane], p->impulse[2][k->lane]);
+        k->row[0].impulse = force.x;
+        k->row[1].impulse = force.y;
+        k->row[2].impulse = force.z;
+        k->force = core_v3_add(k->force, force);
+        return;
+    }
     for (uint32_t r = 0; r < (uint32_t)k->hard + k->soft; r++) {
         const float *row = k->row[r].j, j = k->row[r].impulse;
         force = core_v3_mad(force, core_v3(row[6], row[7], row[8]), j);
@@ -334,11 +434,14 @@ static void sum_load(soft_joints *s, uint32_t i) {
 }
 
 static void run_colors(soft_joints *s, soft_pass pass) {
-    pass_job job = {s, 0, pass};
+    pass_job job = {.s = s, .pass = pass};
     for (uint32_t c = 0; c <= COLORS; c++) {
         uint32_t count = s->first[c + 1] - s->first[c];
         job.first = s->first[c];
         core_jobs_for(s->world->jobs, count, c < COLORS ? 4 : UINT32_MAX, run_blocks, &job);
+        count = s->first_point[c + 1] - s->first_point[c];
+        job.first = s->first_point[c];
+        core_jobs_for(s->world->jobs, count, c < COLORS ? 8 : UINT32_MAX, run_points, &job);
     }
 }
 
@@ -350,7 +453,7 @@ void phys_soft_joints_pass(soft_joints *s, soft_pass pass) {
     for (int i = 0; i < SWEEPS; i++) {
         run_colors(s, pass);
     }
-    core_jobs_for(s->world->jobs, s->tree.trees, 1, run_trees, &(pass_job){s, 0, pass});
+    core_jobs_for(s->world->jobs, s->tree.trees, 1, run_trees, &(pass_job){.s = s, .pass = pass});
     each(s, s->body_count, 512, note_end);
     if (pass == SOFT_RELAX) {
         move_impulses(s, false);
@@ -378,6 +481,7 @@ void phys_soft_joints_move(soft_joints *s) {
     turn_pivots(s);
     each(s, s->body_count, 512, update_body);
     each(s, s->count, 64, refresh);
+    prepare_points(s);
     each(s, s->tree.trees, 1, joint_tree_factor);
 }
 

@@ -8,6 +8,8 @@
 #include "phys/soft.h"
 
 #define JOINT_NONE UINT32_MAX
+// Part of the error that a substep takes back where iteration shares it among neighbours.
+#define JOINT_RATE_LOOP 0.5f
 
 // A body that joints hold. Entry 0 is the world.
 typedef struct joint_body {
@@ -36,6 +38,7 @@ typedef struct joint_work {
     uint8_t type, hard, soft;
     bool direct;  // hard rows belong to a tree
     bool blocked; // has a lane
+    bool pointed; // in joint_points
     bool upper;   // side of the limit in this step
     uint32_t block, lane;
     core_vec3 force, torque; // impulses on b, sum over the substeps so far, N s and N m s
@@ -59,6 +62,22 @@ typedef struct joint_block {
     joint_lanes hard[PHYS_JOINT_HARD], soft[PHYS_JOINT_SOFT];
     uint32_t hard_count, soft_count; // most of any lane
 } joint_block;
+
+// Ball joints that need no more than a point held. la, lb: arms in the bodies' axes, or places in
+// the world for what does not move. diagonal, off: of the inverse matrix.
+typedef struct joint_points {
+    _Alignas(CORE_ALIGN) int32_t a[SOFT_LANES];
+    int32_t b[SOFT_LANES], to_a[SOFT_LANES], to_b[SOFT_LANES];
+    LANES ima[SOFT_LANES], imb[SOFT_LANES];
+    LANES la[3][SOFT_LANES], lb[3][SOFT_LANES], ra[3][SOFT_LANES], rb[3][SOFT_LANES];
+    LANES gap[3][SOFT_LANES], diagonal[3][SOFT_LANES], off[3][SOFT_LANES];
+    LANES impulse[3][SOFT_LANES];
+} joint_points;
+
+// Poses of bodies by place, rows of 8: centre, 0, imaginary part of the rotation, 0; real part.
+typedef struct joint_poses {
+    float *pose, *real;
+} joint_poses;
 
 // One elimination: the joint of a body to its parent in the tree, or to what does not move.
 typedef struct joint_op {
@@ -90,7 +109,9 @@ typedef struct soft_joints {
     uint32_t count;
     joint_tree tree;
     joint_block *block;
-    uint32_t *first; // first block of each colour
+    joint_points *point;
+    joint_poses poses;
+    uint32_t *first, *first_point; // first block of each colour
     uint32_t colors;
 } soft_joints;
 
@@ -117,5 +138,10 @@ void phys_soft_joints_end(soft_joints *s);
 
 CORE_SIMD_DECLARE(void, phys_joint_blocks,
                   (joint_block * block, uint32_t count, soft_bodies *bodies, soft_pass pass))
+
+// With poses: prepares; without: runs a pass.
+CORE_SIMD_DECLARE(void, phys_joint_points,
+                  (joint_points * block, uint32_t count, soft_bodies *bodies,
+                   const joint_poses *poses, soft_pass pass, float inv_h))
 
 #endif
