@@ -204,14 +204,18 @@ static void start_state(const soft_joints *s, uint32_t i) {
     phi[4][5] = phi[5][4] = m[6];
 }
 
+// phi is symmetric: its rows are summed instead of its columns, six sums side by side. Rows of
+// points and hinges are half empty.
 static void answer(double phi[6][6], const float *row, double out[6]) {
-    for (int i = 0; i < 6; i++) {
-        double sum = 0.0;
-        for (int k = 0; k < 6; k++) {
-            sum += phi[i][k] * (double)row[k];
+    double sum[6] = {0};
+    for (int k = 0; k < 6; k++) {
+        if (row[k] != 0.0f) {
+            for (int i = 0; i < 6; i++) {
+                sum[i] += phi[k][i] * (double)row[k];
+            }
         }
-        out[i] = sum;
     }
+    memcpy(out, sum, sizeof sum);
 }
 
 static double along(const float *row, const double v[6]) {
