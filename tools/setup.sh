@@ -59,6 +59,7 @@ peers pc:bullet libbullet-dev
 peers pc:ode libode-dev
 window cmd:xvfb-run xvfb
 window cmd:xauth xauth
+window file:/usr/lib*/libXtst.so.6 libxtst6
 clang cmd:clang clang
 clang clangrt: libclang-rt-dev
 lint cmd:g++ g++

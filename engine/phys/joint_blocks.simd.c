@@ -58,8 +58,12 @@ static void solve_hard(joint_block *c, int k, motion *m, bool correct) {
         for (uint32_t n = 1; n < c->hard_count; n++) {
             sum = vf_mad(vf_load(c->inverse[i][n] + k), miss[n], sum);
         }
-        vf d = vf_neg(sum);
-        vf_store(r->impulse + k, vf_add(vf_load(r->impulse + k), d));
+        vf was = vf_load(r->impulse + k), d = vf_neg(sum);
+        if (correct) {
+            d = vf_mul(d, vf_set1(JOINT_LOOP_MASS));
+            d = vf_sub(d, vf_mul(was, vf_set1(JOINT_LOOP_GIVE)));
+        }
+        vf_store(r->impulse + k, vf_add(was, d));
         give(c, r, k, m, d);
     }
 }

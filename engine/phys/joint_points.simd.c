@@ -85,11 +85,13 @@ static void solve(joint_points *c, int k, const soft_bodies *s, soft_pass pass, 
             rows_sub(rows_add(m.vb, rows_cross(m.wb, rb)), rows_add(m.va, rows_cross(m.wa, ra)));
         if (pass == SOFT_SOLVE) {
             v = rows_mad(v, rows_load(c->gap[0] + k, c->gap[1] + k, c->gap[2] + k),
-                         vf_set1(JOINT_RATE_LOOP * inv_h));
+                         vf_set1(JOINT_LOOP_RATE * inv_h));
         }
+        bool gives = pass == SOFT_SOLVE;
         inertia inverse = {rows_load(c->diagonal[0] + k, c->diagonal[1] + k, c->diagonal[2] + k),
                            rows_load(c->off[0] + k, c->off[1] + k, c->off[2] + k)};
-        j = rows_mul(turn_by(&inverse, v), vf_set1(-1.0f));
+        j = rows_mul(turn_by(&inverse, v), vf_set1(gives ? -JOINT_LOOP_MASS : -1.0f));
+        j = gives ? rows_mad(j, was, vf_set1(-JOINT_LOOP_GIVE)) : j;
         rows_store(c->impulse[0] + k, c->impulse[1] + k, c->impulse[2] + k, rows_add(was, j));
     }
     inertia ia = inertia_of(s, c->a + k), ib = inertia_of(s, c->b + k);

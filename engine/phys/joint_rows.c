@@ -181,7 +181,7 @@ static void hard_rows(const soft_joints *s, joint_work *k, const pose *p) {
     default:
         point_rows(r, p);
     }
-    float rate = (k->direct ? RATE_DIRECT : JOINT_RATE_LOOP) / s->h;
+    float rate = (k->direct ? RATE_DIRECT : JOINT_LOOP_RATE) / s->h;
     for (uint32_t i = 0; i < k->hard; i++) {
         joint_row *row = &k->row[i];
         row->bias = CORE_CLAMP(row->error * rate, -SPEED_MAX, SPEED_MAX);

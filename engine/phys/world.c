@@ -215,12 +215,16 @@ bool phys_world_rule(const phys_world *w, uint32_t a, uint32_t b) {
     return check_layers(a, b) && (w->rule[a] >> b & 1u) != 0;
 }
 
+#define NAMED_LOST 8u // a structure that explodes would fill the log
+
 // A body that is no longer finite is stopped where it last made sense (its origin is still that of
 // the step before) and named; the rest goes on.
-static void isolate(phys_bodies *b, uint32_t i) {
+static void isolate(phys_bodies *b, uint32_t i, uint32_t found) {
     core_handle h = core_columns_handle(&b->set, i);
-    core_fail("phys body %u:%u is no longer finite: it is frozen and takes no more part", h.index,
-              h.generation);
+    if (found < NAMED_LOST) {
+        core_fail("phys body %u:%u is no longer finite: it is frozen and takes no more part",
+                  h.index, h.generation);
+    }
     b->flags[i] |= PHYS_BODY_LOST;
     b->type[i] = PHYS_STATIC;
     b->im[i] = b->ix[i] = b->iy[i] = b->iz[i] = 0.0f;
@@ -236,12 +240,17 @@ static void isolate(phys_bodies *b, uint32_t i) {
 
 static void isolate_lost(phys_world *w) {
     phys_bodies *b = &w->bodies;
+    uint32_t found = 0;
     for (uint32_t i = 0; i < core_columns_count(&b->set); i++) {
         float sum = b->cx[i] + b->cy[i] + b->cz[i] + b->qx[i] + b->qy[i] + b->qz[i] + b->qw[i] +
                     b->vx[i] + b->vy[i] + b->vz[i] + b->wx[i] + b->wy[i] + b->wz[i];
         if (!phys_finite(sum)) {
-            isolate(b, i);
+            isolate(b, i, found++);
         }
+    }
+    if (found > NAMED_LOST) {
+        core_fail("phys: %u bodies are no longer finite in this step, %u of them named above",
+                  found, NAMED_LOST);
     }
 }
 

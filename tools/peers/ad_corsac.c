@@ -91,17 +91,23 @@ int pe_add(pe_world *p, const pe_body_def *d) {
     return p->n++;
 }
 
+static int join(pe_world *p, phys_joint_desc *d, int a, int b) {
+    d->a = p->body[a];
+    d->b = b < 0 ? CORE_NULL_HANDLE : p->body[b];
+    return !core_handle_is_null(phys_joint_create(p->w, d));
+}
+
 int pe_ball(pe_world *p, int a, int b, const double at[3]) {
-    (void)p;
-    (void)a;
-    (void)b;
-    (void)at;
-    return 0;
+    phys_joint_desc d = phys_joint_desc_default(PHYS_JOINT_BALL);
+    d.anchor = vec(at);
+    return join(p, &d, a, b);
 }
 
 int pe_dist(pe_world *p, int a, int b, const double pa[3], const double pb[3]) {
-    (void)pb;
-    return pe_ball(p, a, b, pa);
+    phys_joint_desc d = phys_joint_desc_default(PHYS_JOINT_DISTANCE);
+    d.anchor_a = vec(pa);
+    d.anchor_b = vec(pb);
+    return join(p, &d, a, b);
 }
 
 void pe_ready(pe_world *p) { (void)p; }
