@@ -9,37 +9,35 @@
 
 #define MAX_WORDS 256
 
-// The folder two levels up from this program's file: the tree's root (build/corsac) or the prefix.
-static bool root_of_program(char *out, size_t size) {
-    ssize_t n = readlink("/proc/self/exe", out, size - 1);
-    if (n <= 0) {
-        return core_fail("corsac lab: cannot find out where this program lies");
-    }
-    out[n] = 0;
-    for (int up = 0; up < 2; up++) {
-        char *slash = strrchr(out, '/');
-        if (slash) {
-            *slash = 0;
+// This program's file, and the nearest folder above it that holds tools/lab: the source tree.
+static bool find_tree(char *self, char *root, size_t size) {
+    ssize_t n = readlink("/proc/self/exe", self, size - 1);
+    self[n > 0 ? n : 0] = 0;
+    snprintf(root, size, "%s", self);
+    for (char *slash = strrchr(root, '/'); slash; slash = strrchr(root, '/')) {
+        char there[4096];
+        *slash = 0;
+        snprintf(there, sizeof there, "%s/tools/lab/__main__.py", root);
+        if (access(there, R_OK) == 0) {
+            return true;
         }
     }
-    return true;
+    return false;
 }
 
 // Replaces this process by Python: with the lab's packages, or with the system's one.
 static int run_python(const char *command, const char *script, bool packages, int argc,
                       const char *const *argv) {
-    char root[3072], python[4096], path[4096], self[4096];
-    if (!root_of_program(root, sizeof root)) {
-        return 5;
-    }
+    char root[3072], python[4096], path[4096], self[3072];
+    bool found = find_tree(self, root, sizeof root);
     snprintf(python, sizeof python, "%s/build/venv/bin/python3", root);
     snprintf(path, sizeof path, "%s/tools/%s", root, script);
-    snprintf(self, sizeof self, "%s/build/corsac", root);
     bool own = access(python, X_OK) == 0;
-    if (access(path, R_OK) != 0 || (packages && !own)) {
-        core_fail("corsac %s: needs the source tree with its Python environment (%s); run `make "
-                  "lab` there once, which makes it",
-                  command, python);
+    if (!found || (packages && !own)) {
+        core_fail(
+            "corsac %s: needs the source tree above this program, with its Python environment "
+            "(build/venv); run `make lab` there once, which makes it",
+            command);
         return 5;
     }
     const char *words[MAX_WORDS + 3] = {own ? python : "python3", path};
