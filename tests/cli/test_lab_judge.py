@@ -122,6 +122,12 @@ class Files(unittest.TestCase):
         result = {"experiment": "m", "methods": {"a": {"params": {}, "samples": [{"x": 1, "y": 2, "verdict": "stable"}]}}}
         self.assertEqual(json.loads(publish.compact(result))["methods"]["a"]["samples"], [[1, 2, "stable"]])
 
+    def test_the_digest_is_of_what_a_full_run_depends_on(self):
+        raw = {"title": "t", "methods": {"a": {}}, "sweep": {"n": [1, 2]}, "quick": True}
+        full = experiment.digest_of(raw)
+        self.assertEqual(full, experiment.digest_of({**raw, "quick": False, "quick_sweep": {"n": [1]}}))
+        self.assertNotEqual(full, experiment.digest_of({**raw, "sweep": {"n": [1, 3]}}))
+
     def test_candidates_of_tune_come_cheapest_first(self):
         def row(cost, **settings):
             return {"settings": settings, "error": 1, "cost": cost}

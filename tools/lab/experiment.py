@@ -22,6 +22,7 @@ stated                [{x, y, text}]: figures that others state, drawn as stars 
 
 import hashlib
 import itertools
+import json
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -74,6 +75,12 @@ class Experiment:
         return {**self.fixed, **method, **{names.get(k, k): v for k, v in point.items()}, "seed": seed}
 
 
+def digest_of(raw):
+    """What a full run depends on: the file as read, without what only LAB=quick looks at."""
+    full = {k: v for k, v in raw.items() if k not in ("quick", "quick_sweep")}
+    return hashlib.sha256(json.dumps(full).encode()).hexdigest()[:16]
+
+
 def load(path, quick=False):
     """Reads and checks one file; BadExperiment names file and field."""
     text = Path(path).read_bytes()
@@ -102,6 +109,6 @@ def load(path, quick=False):
         error=raw.get("error", {}), cost=raw.get("cost", {}), seeds=raw.get("seeds", [1]),
         repeats=raw.get("repeats", 3), chart=raw.get("chart", {}), expect=raw.get("expect", []),
         map=raw.get("map", {}), quick=raw.get("quick", False), docs=raw.get("docs", False),
-        digest=hashlib.sha256(text).hexdigest()[:16], binaries=raw.get("binaries", {}),
+        digest=digest_of(raw), binaries=raw.get("binaries", {}),
         reference=raw.get("reference"), stated=raw.get("stated", []),
         shortened="quick_sweep" in raw)

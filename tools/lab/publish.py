@@ -5,12 +5,13 @@ Each experiment with `docs = true` whose result is there and belongs to the pres
 copied, its digest recorded; `stale()` names those whose committed chart or map is of another file.
 """
 
-import hashlib
 import json
 import shutil
 import sys
 import tomllib
 from pathlib import Path
+
+from experiment import digest_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -18,10 +19,9 @@ ROOT = Path(__file__).resolve().parents[2]
 def chosen():
     """(name, digest, is a map) of every experiment whose chart is committed."""
     for file in sorted((ROOT / "scripts/lab").glob("*.toml")):
-        text = file.read_bytes()
-        raw = tomllib.loads(text.decode())
+        raw = tomllib.loads(file.read_text())
         if raw.get("docs"):
-            yield file.stem, hashlib.sha256(text).hexdigest()[:16], "map" in raw
+            yield file.stem, digest_of(raw), "map" in raw
 
 
 def recorded(name):
