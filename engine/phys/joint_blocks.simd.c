@@ -7,17 +7,17 @@ typedef struct motion { // of both bodies
     rows3 va, wa, vb, wb;
 } motion;
 
-static rows3 part(const joint_lanes *r, int i, int k) {
+ROWS_INLINE rows3 part(const joint_lanes *r, int i, int k) {
     return rows_load(r->j[i] + k, r->j[i + 1] + k, r->j[i + 2] + k);
 }
 
-static vf speed(const joint_lanes *r, int k, const motion *m) {
+ROWS_INLINE vf speed(const joint_lanes *r, int k, const motion *m) {
     vf a = vf_add(rows_dot(part(r, 0, k), m->va), rows_dot(part(r, 3, k), m->wa));
     vf b = vf_add(rows_dot(part(r, 6, k), m->vb), rows_dot(part(r, 9, k), m->wb));
     return vf_add(a, b);
 }
 
-static void give(const joint_block *c, const joint_lanes *r, int k, motion *m, vf d) {
+ROWS_INLINE void give(const joint_block *c, const joint_lanes *r, int k, motion *m, vf d) {
     m->va = rows_mad(m->va, part(r, 0, k), vf_mul(d, vf_load(c->ima + k)));
     m->wa = rows_mad(m->wa, rows_load(r->ia[0] + k, r->ia[1] + k, r->ia[2] + k), d);
     m->vb = rows_mad(m->vb, part(r, 6, k), vf_mul(d, vf_load(c->imb + k)));
@@ -25,7 +25,7 @@ static void give(const joint_block *c, const joint_lanes *r, int k, motion *m, v
 }
 
 // Impulses of the last substep.
-static void warm(const joint_block *c, int k, motion *m) {
+ROWS_INLINE void warm(const joint_block *c, int k, motion *m) {
     for (uint32_t i = 0; i < c->soft_count; i++) {
         give(c, &c->soft[i], k, m, vf_load(c->soft[i].impulse + k));
     }
@@ -34,7 +34,7 @@ static void warm(const joint_block *c, int k, motion *m) {
     }
 }
 
-static void solve_soft(joint_block *c, int k, motion *m, bool correct) {
+ROWS_INLINE void solve_soft(joint_block *c, int k, motion *m, bool correct) {
     for (uint32_t i = 0; i < c->soft_count; i++) {
         joint_lanes *r = &c->soft[i];
         vf was = vf_load(r->impulse + k), bias = vf_load((correct ? r->bias : r->relax) + k);
@@ -46,7 +46,7 @@ static void solve_soft(joint_block *c, int k, motion *m, bool correct) {
     }
 }
 
-static void solve_hard(joint_block *c, int k, motion *m, bool correct) {
+ROWS_INLINE void solve_hard(joint_block *c, int k, motion *m, bool correct) {
     vf miss[PHYS_JOINT_HARD];
     for (uint32_t i = 0; i < c->hard_count; i++) {
         const joint_lanes *r = &c->hard[i];
@@ -69,7 +69,7 @@ static void solve_hard(joint_block *c, int k, motion *m, bool correct) {
 }
 
 // Lanes whose body stays leave zeros at the row of empty lanes.
-static void put(float *to, const int32_t *at, const float *mass, rows3 v, rows3 w) {
+ROWS_INLINE void put(float *to, const int32_t *at, const float *mass, rows3 v, rows3 w) {
     vm moves = vf_gt(vf_load(mass), vf_zero());
     rows_scatter(to, at, 0, (rows3){vf_keep(moves, v.x), vf_keep(moves, v.y), vf_keep(moves, v.z)});
     rows_scatter(to, at, 4, (rows3){vf_keep(moves, w.x), vf_keep(moves, w.y), vf_keep(moves, w.z)});

@@ -8,20 +8,20 @@ typedef struct inertia {
     rows3 diagonal, off; // xx yy zz, xy xz yz
 } inertia;
 
-static rows3 turn_by(const inertia *i, rows3 v) {
+ROWS_INLINE rows3 turn_by(const inertia *i, rows3 v) {
     return (rows3){
         vf_add(vf_add(vf_mul(i->diagonal.x, v.x), vf_mul(i->off.x, v.y)), vf_mul(i->off.y, v.z)),
         vf_add(vf_add(vf_mul(i->off.x, v.x), vf_mul(i->diagonal.y, v.y)), vf_mul(i->off.z, v.z)),
         vf_add(vf_add(vf_mul(i->off.y, v.x), vf_mul(i->off.z, v.y)), vf_mul(i->diagonal.z, v.z))};
 }
 
-static inertia inertia_of(const soft_bodies *s, const int32_t *at) {
+ROWS_INLINE inertia inertia_of(const soft_bodies *s, const int32_t *at) {
     return (inertia){rows_gather(s->inertia, at, 0), rows_gather(s->inertia, at, 4)};
 }
 
 // Anchor in the world; its arm goes to out.
-static rows3 anchor(const joint_poses *p, const int32_t *at, float local[3][SOFT_LANES], int k,
-                    float out[3][SOFT_LANES]) {
+ROWS_INLINE rows3 anchor(const joint_poses *p, const int32_t *at, float local[3][SOFT_LANES], int k,
+                         float out[3][SOFT_LANES]) {
     rows3 v = rows_load(local[0] + k, local[1] + k, local[2] + k);
     rows3 u = rows_gather(p->pose, at, 4), w = rows_gather(p->real, at, 0);
     rows3 t = rows_cross(u, v);
@@ -32,7 +32,7 @@ static rows3 anchor(const joint_poses *p, const int32_t *at, float local[3][SOFT
 }
 
 // Adds -[r] I [r], the answer of a body's turning at the arm.
-static void add_turning(rows3 *diagonal, rows3 *off, const inertia *i, rows3 r) {
+ROWS_INLINE void add_turning(rows3 *diagonal, rows3 *off, const inertia *i, rows3 r) {
     vf o = vf_zero();
     rows3 x = rows_cross(turn_by(i, (rows3){o, r.z, vf_neg(r.y)}), r);
     rows3 y = rows_cross(turn_by(i, (rows3){vf_neg(r.z), o, r.x}), r);
@@ -41,7 +41,7 @@ static void add_turning(rows3 *diagonal, rows3 *off, const inertia *i, rows3 r) 
     *off = rows_add(*off, (rows3){x.y, x.z, y.z});
 }
 
-static void prepare(joint_points *c, int k, const soft_bodies *s, const joint_poses *poses) {
+ROWS_INLINE void prepare(joint_points *c, int k, const soft_bodies *s, const joint_poses *poses) {
     rows3 pa = anchor(poses, c->a + k, c->la, k, c->ra),
           pb = anchor(poses, c->b + k, c->lb, k, c->rb);
     rows3 gap = rows_sub(pb, pa);
@@ -68,13 +68,13 @@ typedef struct motion { // of both bodies
     rows3 va, wa, vb, wb;
 } motion;
 
-static void put(float *to, const int32_t *at, const float *mass, rows3 v, rows3 w) {
+ROWS_INLINE void put(float *to, const int32_t *at, const float *mass, rows3 v, rows3 w) {
     vm moves = vf_gt(vf_load(mass), vf_zero());
     rows_scatter(to, at, 0, (rows3){vf_keep(moves, v.x), vf_keep(moves, v.y), vf_keep(moves, v.z)});
     rows_scatter(to, at, 4, (rows3){vf_keep(moves, w.x), vf_keep(moves, w.y), vf_keep(moves, w.z)});
 }
 
-static void solve(joint_points *c, int k, const soft_bodies *s, soft_pass pass, float inv_h) {
+ROWS_INLINE void solve(joint_points *c, int k, const soft_bodies *s, soft_pass pass, float inv_h) {
     motion m = {rows_gather(s->velocity, c->a + k, 0), rows_gather(s->velocity, c->a + k, 4),
                 rows_gather(s->velocity, c->b + k, 0), rows_gather(s->velocity, c->b + k, 4)};
     rows3 ra = rows_load(c->ra[0] + k, c->ra[1] + k, c->ra[2] + k);
