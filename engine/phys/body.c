@@ -211,6 +211,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
         add_shape(w, h.index, i, &shapes[k], hull[k]);
     }
     core_arena_rewind(&w->scratch, mark);
+    phys_static_note(w, i);
     w->measured = false;
     w->edited = true;
     w->trees_stale = true;
@@ -223,6 +224,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
         return core_fail("phys body: destroy of a stale or null handle (%u:%u)", body.index,
                          body.generation);
     }
+    phys_static_note(w, row);
     for (uint32_t slot = w->bodies.shape[row]; slot != 0;) {
         uint32_t i = phys_slot_row(&w->shapes.set, slot), next = w->shapes.next[i];
         phys_pairs_drop_shape(w, slot);
@@ -303,6 +305,7 @@ bool phys_body_set_layer(phys_world *w, phys_body body, uint32_t layer) {
         return i != CORE_NO_ROW && core_fail("phys body: layer is %u, expected 0..31", layer);
     }
     w->bodies.layer[i] = (uint8_t)layer;
+    phys_static_note(w, i);
     w->pairs_stale = true;
     phys_wake_row(w, i);
     return true;
@@ -354,7 +357,9 @@ bool phys_body_set_position(phys_world *w, phys_body body, core_vec3 p) {
     if (i == CORE_NO_ROW || !check_vec("position", p, PHYS_FAR)) {
         return false;
     }
+    phys_static_note(w, i);
     phys_put3(w->bodies.px, w->bodies.py, w->bodies.pz, i, p);
+    phys_static_note(w, i);
     phys_body_sync_center(&w->bodies, i);
     w->bodies.seen[i] = phys_get3(w->bodies.cx, w->bodies.cy, w->bodies.cz, i);
     w->measured = false;
@@ -373,11 +378,13 @@ bool phys_body_set_rotation(phys_world *w, phys_body body, core_quat q) {
         return core_fail("phys body: rotation (%g, %g, %g, %g) has no direction", (double)q.x,
                          (double)q.y, (double)q.z, (double)q.w);
     }
+    phys_static_note(w, i);
     q = phys_quat_unit(q);
     w->bodies.qx[i] = q.x;
     w->bodies.qy[i] = q.y;
     w->bodies.qz[i] = q.z;
     w->bodies.qw[i] = q.w;
+    phys_static_note(w, i);
     phys_body_sync_center(&w->bodies, i);
     w->edited = true;
     phys_wake_row(w, i);

@@ -222,6 +222,48 @@ uint32_t phys_world_overlap(phys_world *world, const phys_shape_desc *shape, cor
 bool phys_world_closest(phys_world *world, core_vec3 point, float reach, const phys_filter *filter,
                         phys_hit *out);
 
+// ---- the world as geometry: for navigation, debug drawing, export ----
+// One shape of one body, in the world's frame. Pointers belong to the world and stay valid until a
+// body is made or destroyed or a snapshot restored.
+typedef struct phys_shape_view {
+    phys_body body;
+    phys_body_type body_type; // navigation usually takes PHYS_STATIC alone
+    uint32_t layer;           // of the body
+    phys_shape_type type;
+    core_vec3 position; // of the shape's own frame; sphere, capsule, cylinder, box: its centre
+    core_quat rotation; // capsule, cylinder: axis along the frame's y; plane: its normal is y
+    core_vec3 half;     // box: half extents (m)
+    float radius;       // sphere, capsule, cylinder (m)
+    float half_height;  // capsule (of the segment), cylinder (m)
+    core_aabb bounds;   // world; of a plane +-1e9 m
+    // Hull: convex polygons, face f has loop[face_begin[f] .. face_begin[f + 1]), counter-clockwise
+    // from outside; mesh: triangles. In the shape's own frame.
+    uint32_t vertex_count, face_count, triangle_count;
+    const core_vec3 *vertex;    // [vertex_count] hull, mesh
+    const uint32_t *face_begin; // [face_count + 1] hull
+    const uint32_t *loop;       // [face_begin[face_count]] hull
+    const uint32_t *index;      // [3 * triangle_count] mesh
+} phys_shape_view;
+// Shapes of all bodies; rows 0 .. count - 1, in an order that only edits of the world change.
+uint32_t phys_world_shape_count(const phys_world *world);
+// False + core_fail for rows out of range.
+bool phys_world_shape(const phys_world *world, uint32_t row, phys_shape_view *out);
+// The shape's surface as triangles in the world's frame, three corners each, counter-clockwise from
+// outside. Round shapes are cut into flat pieces that lie at most `tolerance` m (> 0) inside; a
+// plane becomes a square of half side `plane_half` m about the body's origin. Writes as many whole
+// triangles as fit into `capacity` (counted in triangles; out may be NULL when 0) and returns how
+// many there are.
+uint32_t phys_shape_triangles(const phys_shape_view *shape, float tolerance, float plane_half,
+                              core_vec3 *out, uint32_t capacity);
+// Where static geometry changed: counts up when a static body is made, destroyed, moved, turned or
+// given another layer, and when a snapshot is restored.
+uint64_t phys_world_static_version(const phys_world *world);
+// Bounds (world, before and after) of the changes later than version `since`, oldest first. Writes
+// at most `capacity`, returns how many there are. False in *complete: too long ago (only the last
+// 256 are kept) or a restore: anything may have changed.
+uint32_t phys_world_static_changes(const phys_world *world, uint64_t since, core_aabb *out,
+                                   uint32_t capacity, bool *complete);
+
 // ---- snapshot ----
 // The whole state: bodies, contacts with their impulses, triggers, fields, rules. A world restored
 // to it steps on with the same bits. Hulls are not in it: only worlds that still have the shapes

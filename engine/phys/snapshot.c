@@ -76,6 +76,7 @@ bool phys_world_restore(phys_world *w, const void *data, size_t size) {
     w->time = h.time;
     memcpy(w->rule, h.rule, sizeof h.rule);
     phys_pairs_rebuild_map(w);
+    phys_static_forget(w);
     w->trees_stale = w->rows_stale = w->edited = w->joint_pairs.stale = true;
     w->measured = false;
     w->order_count = 0;

@@ -246,6 +246,13 @@ typedef struct phys_solver_method {
 } phys_solver_method;
 #define PHYS_LEVELS 3u // substeps of the solver's default, twice and four times as many
 
+// Where static bodies changed; see phys_world_static_changes.
+#define PHYS_STATIC_LOG 256u
+typedef struct phys_static_log {
+    uint64_t version, oldest; // changes oldest + 1 .. version are in the ring
+    core_aabb change[PHYS_STATIC_LOG];
+} phys_static_log;
+
 struct phys_world {
     core_jobs *jobs;
     core_metrics *metrics;
@@ -271,6 +278,7 @@ struct phys_world {
     phys_tree fixed_tree, moving_tree;
     bool trees_stale; // rows changed
     bool edited;      // bodies were made, moved or removed since the last step
+    phys_static_log statics;
     bool any_moved;   // some shape left its bounds in this step
     bool rows_stale;  // contacts' body rows are to be looked up again
     bool pairs_stale; // layers or rules changed: every pair is to be asked again
@@ -359,6 +367,10 @@ core_vec3 phys_principal(const phys_mat3 *inertia, core_quat *frame);
 phys_geom phys_shape_geom(const phys_world *world, uint32_t shape_row);
 core_aabb phys_geom_bounds(const phys_geom *geom);
 void phys_shapes_update_bounds(phys_world *world, float dt);
+
+// statics.c: notes that a body, if static, is where it is now (call before and after a change).
+void phys_static_note(phys_world *world, uint32_t body_row);
+void phys_static_forget(phys_world *world); // anything may have changed
 
 // body.c
 void phys_body_sync_center(phys_bodies *b, uint32_t row); // origin -> centre of mass
