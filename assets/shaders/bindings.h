@@ -29,6 +29,7 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_SSBO_ROWS            7
 #define GFX_SSBO_SHADOWS         8
 #define GFX_SSBO_CLUSTER_GRID    9
+#define GFX_SSBO_EXPOSURE        10
 
 // Texture units.
 #define GFX_TEX_BASE_COLOR         0
@@ -42,6 +43,9 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_TEX_IMAGE              9
 #define GFX_TEX_ENVIRONMENT        10
 #define GFX_TEX_PANORAMA           11
+#define GFX_TEX_AO                 12
+#define GFX_TEX_BLOOM              13
+#define GFX_TEX_DEPTH              14
 
 #define GFX_DFG_SIZE           64 // texels a side
 #define GFX_ENVIRONMENT_SIZE   64 // texels a side of a face of the first level
@@ -94,6 +98,13 @@ struct gfx_view_block {
     GFX_VEC4(sky_glow); // rgb radiance round the sun
     GFX_VEC4(sky_sun);  // unit direction to it; exponent of the glow
     GFX_VEC4(harmonics[9]);
+    GFX_VEC4(ao);        // strength, radius (m), slices, steps a side
+    GFX_VEC4(fog);       // density at the base height (1/m), its falloff (1/m), base height (m)
+    GFX_VEC4(fog_color); // rgb radiance
+    GFX_VEC4(bloom);     // strength, threshold
+    GFX_VEC4(grade);     // contrast, saturation; key and adaptation of the automatic exposure
+    GFX_VEC4(lift);
+    GFX_VEC4(gain);
 };
 
 struct gfx_light_block {
@@ -121,6 +132,9 @@ struct gfx_cluster_block { // what cluster.comp knows of the grid
     GFX_VEC4(lens);        // half extents at depth 1; 1 with perspective
     GFX_VEC4(depth[17]);   // bounds of the slices
 };
+
+#define GFX_EXPOSURE_BINS  128   // of log2 luminance
+#define GFX_EXPOSURE_RANGE 16.0f // the histogram spans 2^-16 to 2^16
 
 struct gfx_instance_block {
     GFX_VEC4(row0); // world transform, rows of a 3x4 matrix

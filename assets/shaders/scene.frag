@@ -7,6 +7,12 @@
 #ifdef USE_DEBUG
 #include "debug.glsl"
 #endif
+#ifdef USE_FOG
+#include "fog.glsl"
+#endif
+#ifdef USE_AO
+layout(binding = GFX_TEX_AO) uniform sampler2D u_ao;
+#endif
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -84,7 +90,15 @@ void main() {
     emission *= texture(u_emissive, v_uv).rgb;
     ambient = 1.0 + m.params.z * (texture(u_occlusion, v_uv).r - 1.0);
 #endif
+#ifdef USE_AO
+    ambient = min(ambient, texelFetch(u_ao, ivec2(gl_FragCoord.xy), 0).r);
+#endif
     vec3 radiance = directLight(s) + ambientLight(s) * ambient + emission;
+#ifdef USE_FOG
+    vec3 eye = u_view.camera.w > 0.0 ? u_view.camera.xyz
+                                     : v_world + s.view * viewDepth(gl_FragCoord.z);
+    radiance = mix(u_view.fog_color.rgb, radiance, fogPasses(eye, v_world - eye));
+#endif
 #ifdef USE_BLEND
     o_color = vec4(radiance * base.a, base.a);
 #else

@@ -38,44 +38,9 @@ bool gfx_device_check(gfx_device *device, const char *what, uint32_t errors_befo
                      device->gl_errors - errors_before, core_last_error());
 }
 
-static GLuint make_texture(GLenum format, uint32_t width, uint32_t height) {
-    GLuint t;
-    glCreateTextures(GL_TEXTURE_2D, 1, &t);
-    glTextureStorage2D(t, 1, format, (GLsizei)width, (GLsizei)height);
-    glTextureParameteri(t, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(t, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTextureParameteri(t, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(t, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    return t;
-}
-
-static void release_targets(gfx_device *d) {
-    const GLuint textures[3] = {d->hdr_texture, d->depth_texture, d->ldr_texture};
-    const GLuint targets[2] = {d->hdr_target, d->ldr_target};
-    glDeleteTextures(3, textures);
-    glDeleteFramebuffers(2, targets);
-}
-
 static bool make_targets(gfx_device *d, uint32_t width, uint32_t height) {
-    release_targets(d);
     d->width = width, d->height = height;
-    d->hdr_texture = make_texture(d->float_target ? GL_RGBA32F : GL_RGBA16F, width, height);
-    d->depth_texture = make_texture(GL_DEPTH_COMPONENT32F, width, height);
-    d->ldr_texture = make_texture(GL_RGBA8, width, height);
-    GLuint targets[2];
-    glCreateFramebuffers(2, targets);
-    d->hdr_target = targets[0], d->ldr_target = targets[1];
-    glNamedFramebufferTexture(d->hdr_target, GL_COLOR_ATTACHMENT0, d->hdr_texture, 0);
-    glNamedFramebufferTexture(d->hdr_target, GL_DEPTH_ATTACHMENT, d->depth_texture, 0);
-    glNamedFramebufferTexture(d->ldr_target, GL_COLOR_ATTACHMENT0, d->ldr_texture, 0);
-    for (int i = 0; i < 2; ++i) {
-        GLenum status = glCheckNamedFramebufferStatus(targets[i], GL_DRAW_FRAMEBUFFER);
-        if (status != GL_FRAMEBUFFER_COMPLETE) {
-            return core_fail("gfx_device: a %ux%u target is not complete (0x%x)", width, height,
-                             (unsigned)status);
-        }
-    }
-    return true;
+    return gfx_targets_resize(d, &d->targets, width, height);
 }
 
 static bool check_size(const char *call, uint32_t width, uint32_t height) {
@@ -94,6 +59,7 @@ static void set_up_context(gfx_device *d) {
     glCreateVertexArrays(1, &d->empty_vao);
     snprintf(d->name, sizeof d->name, "%s", (const char *)glGetString(GL_RENDERER));
     d->software = strstr(d->name, "llvmpipe") || strstr(d->name, "softpipe");
+    glGetIntegerv(GL_MAX_SAMPLES, &d->most_samples);
     d->draw_parameters = GLAD_GL_ARB_shader_draw_parameters;
 }
 
@@ -150,7 +116,8 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_textures_release(&d->textures);
     glDeleteTextures(1, &d->dfg_texture);
     glDeleteVertexArrays(1, &d->empty_vao);
-    release_targets(d);
+    gfx_targets_release(&d->targets);
+    glDeleteBuffers(1, &d->exposure);
     gfx_growing *const arrays[] = {&d->places, &d->visible,  &d->keys,   &d->scratch,
                                    &d->rows,   &d->commands, &d->batches};
     for (size_t i = 0; i < CORE_COUNT_OF(arrays); ++i) {
@@ -192,8 +159,8 @@ void gfx_device_present(gfx_device *device) {
         return;
     }
     d->context->table->make_current(d->context);
-    glBlitNamedFramebuffer(d->ldr_target, 0, 0, 0, (GLint)d->width, (GLint)d->height, 0, 0,
-                           (GLint)width, (GLint)height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(d->targets.picture.name, 0, 0, 0, (GLint)d->width, (GLint)d->height, 0,
+                           0, (GLint)width, (GLint)height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     d->context->table->present(d->context);
 }
 
@@ -244,15 +211,16 @@ static bool read_texture(gfx_device *d, GLuint texture, GLenum format, GLenum ty
 }
 
 bool gfx_device_read(gfx_device *device, uint8_t *rgba) {
-    return read_texture(device, device->ldr_texture, GL_RGBA, GL_UNSIGNED_BYTE, 4, rgba);
+    return read_texture(device, device->targets.picture.texture, GL_RGBA, GL_UNSIGNED_BYTE, 4,
+                        rgba);
 }
 
 bool gfx_device_read_float(gfx_device *device, float *rgba) {
-    return read_texture(device, device->hdr_texture, GL_RGBA, GL_FLOAT, 16, rgba);
+    return read_texture(device, device->targets.hdr.texture, GL_RGBA, GL_FLOAT, 16, rgba);
 }
 
 bool gfx_device_read_depth(gfx_device *device, float *depth) {
-    return read_texture(device, device->depth_texture, GL_DEPTH_COMPONENT, GL_FLOAT, 4, depth);
+    return read_texture(device, device->targets.depth, GL_DEPTH_COMPONENT, GL_FLOAT, 4, depth);
 }
 
 static bool make_parents(const char *path) {

@@ -200,6 +200,40 @@ typedef struct gfx_quads {
 bool gfx_quads_draw(gfx_device *device, const gfx_world *world);
 void gfx_quads_release(gfx_quads *quads);
 
+// ---- targets of a view (gfx_targets.c) ----
+
+enum { GFX_BLOOM_LEVELS = 8 };
+typedef struct gfx_target { // a texture and the framebuffer that draws to it
+    GLuint texture, name;
+    uint32_t width, height;
+} gfx_target;
+typedef struct gfx_targets {
+    uint32_t width, height;
+    gfx_target hdr;     // linear radiance; its framebuffer has `depth` too
+    gfx_target picture; // encoded for display
+    gfx_target samples; // several samples a pixel, resolved into hdr; 0 without
+    GLuint depth, sample_depth, sample_count;
+    gfx_target ao, ao_smooth;           // visibility of ambient light
+    gfx_target bloom[GFX_BLOOM_LEVELS]; // halves of halves of the bright part
+    gfx_target encoded;                 // what FXAA reads
+} gfx_targets;
+// Makes the targets that the world's settings ask for and drops those that they do not.
+bool gfx_targets_fit(gfx_device *device, const gfx_world *world, gfx_targets *t);
+// Main targets of a size; all others are dropped.
+bool gfx_targets_resize(gfx_device *device, gfx_targets *t, uint32_t width, uint32_t height);
+void gfx_targets_release(gfx_targets *t);
+size_t gfx_targets_bytes(const gfx_device *device, const gfx_targets *t);
+
+// ---- passes over the whole picture (gfx_post.c) ----
+
+bool gfx_post_ambient(gfx_device *device, const gfx_world *world, gfx_targets *t);
+// Everything from the HDR target to the picture.
+bool gfx_post_finish(gfx_device *device, const gfx_world *world, gfx_targets *t);
+// Covers the target by one triangle; blend and depth state stay as they are.
+bool gfx_post_fill(gfx_device *device, const char *fragment, uint32_t features);
+// Binds a target for a pass that replaces all of it.
+void gfx_post_begin(gfx_device *device, const gfx_target *target);
+
 // ---- the device (gfx_device.c, gfx_frame.c) ----
 
 struct gfx_device {
@@ -211,8 +245,11 @@ struct gfx_device {
     char name[128];
     uint32_t gl_errors;
     uint32_t passes;        // of the last frame
-    uint32_t width, height; // of the targets
-    GLuint hdr_texture, depth_texture, hdr_target, ldr_texture, ldr_target;
+    uint32_t width, height; // of the view that is drawn
+    gfx_targets targets;
+    GLuint exposure; // buffer of exposure.comp, 0: the exposure is fixed
+    GLint most_samples;
+    bool samples_warned;
     GLuint empty_vao, dfg_texture;
     gfx_geometry geometry;
     gfx_stream view_block, light_block, instance_block, bone_block, draw_block, row_block;

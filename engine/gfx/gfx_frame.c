@@ -40,6 +40,21 @@ static void end_turn(gfx_device *d) {
 
 // ---- blocks ----
 
+static void write_post(const gfx_settings *s, struct gfx_view_block *b) {
+    const gfx_glsl_vec4 ao = {s->ao, s->ao_radius, (float)(int)s->ao_slices,
+                              (float)(int)s->ao_steps};
+    const gfx_glsl_vec4 fog = {s->fog, s->fog_falloff, s->fog_base};
+    const gfx_glsl_vec4 bloom = {s->bloom, s->bloom_threshold};
+    const gfx_glsl_vec4 grade = {s->contrast, s->saturation, s->key, s->adapt};
+    memcpy(b->ao, ao, sizeof ao);
+    memcpy(b->fog, fog, sizeof fog);
+    memcpy(b->bloom, bloom, sizeof bloom);
+    memcpy(b->grade, grade, sizeof grade);
+    memcpy(b->fog_color, s->fog_color, sizeof s->fog_color);
+    memcpy(b->lift, s->lift, sizeof s->lift);
+    memcpy(b->gain, s->gain, sizeof s->gain);
+}
+
 static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v,
                         const gfx_light_upload *lights) {
     struct gfx_view_block *b = gfx_stream_begin(&d->view_block, sizeof *b, d->frame);
@@ -62,93 +77,183 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     memcpy(b->view_proj, v->view_projection.m, sizeof b->view_proj);
     memcpy(b->view, v->view.m, sizeof b->view);
     b->lens[0] = v->tan_x, b->lens[1] = v->tan_y;
+    write_post(s, b);
     gfx_environment_write(d, world, b);
     gfx_stream_bind(&d->view_block, GL_UNIFORM_BUFFER, GFX_UBO_VIEW, sizeof *b, d->frame);
 }
 
 // ---- passes ----
 
-static uint32_t scene_features(const gfx_device *d, const gfx_world *world, bool clustered) {
-    uint32_t features = clustered ? GFX_FEATURE_CLUSTERED : 0;
-    features |= world->environment_set ? GFX_FEATURE_IBL : 0;
-    features |= world->settings.debug ? GFX_FEATURE_DEBUG : 0;
-    if (d->shadows.count) {
+typedef struct frame { // one view that is drawn
+    gfx_device *device;
+    gfx_world *world;
+    gfx_targets *targets;
+    gfx_view view;
+    gfx_draw_list list;
+    gfx_light_upload lights;
+    uint32_t features; // of scene.frag
+} frame;
+
+static uint32_t scene_features(const frame *f) {
+    const gfx_settings *s = &f->world->settings;
+    uint32_t features = f->lights.clustered ? GFX_FEATURE_CLUSTERED : 0;
+    features |= f->world->environment_set ? GFX_FEATURE_IBL : 0;
+    if (f->device->shadows.count) {
         features |= GFX_FEATURE_SHADOWS;
-        features |= world->settings.shadows == GFX_SHADOWS_SOFT ? GFX_FEATURE_SOFT_SHADOWS : 0;
+        features |= s->shadows == GFX_SHADOWS_SOFT ? GFX_FEATURE_SOFT_SHADOWS : 0;
     }
+    if (s->debug) {
+        return features | GFX_FEATURE_DEBUG;
+    }
+    features |= f->targets->ao.name ? GFX_FEATURE_AO : 0;
+    features |= s->fog > 0.0f ? GFX_FEATURE_FOG : 0;
     return features;
 }
 
-// Over what is there, from far to near, reading depth and leaving it.
-static bool pass_blended(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
-                         uint32_t features) {
-    d->passes++;
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); // premultiplied: highlights stay on clear glass
-    glDepthFunc(GL_GREATER);
-    glDepthMask(GL_FALSE);
-    bool ok = gfx_draws_submit_blended(d, world, list, features);
-    glDisable(GL_BLEND);
-    return ok;
+static bool wants_overdraw(const frame *f) {
+    return f->world->settings.debug == GFX_DEBUG_OVERDRAW;
+}
+static bool wants_depth(const frame *f) { // ambient occlusion reads it before anything is shaded
+    return (f->world->settings.prepass && !wants_overdraw(f)) || f->targets->ao.name;
+}
+static bool wants_ambient(const frame *f) { return f->targets->ao.name != 0; }
+static bool wants_sky(const frame *f) {
+    return f->world->environment_set && !f->world->settings.debug;
+}
+static bool wants_fog(const frame *f) { return f->features & GFX_FEATURE_FOG; }
+static bool wants_blended(const frame *f) { return f->list.batches > f->list.opaque; }
+static bool wants_resolve(const frame *f) { return f->targets->samples.name != 0; }
+static bool always(const frame *f) {
+    (void)f;
+    return true;
 }
 
-static bool pass_scene(gfx_device *d, gfx_world *world, const gfx_draw_list *list,
-                       uint32_t features) {
-    const float *c = world->background;
-    const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
-    glBindTextureUnit(GFX_TEX_DFG, d->dfg_texture);
-    glBindTextureUnit(GFX_TEX_ENVIRONMENT, d->environment.filtered);
-    glBindFramebuffer(GL_FRAMEBUFFER, d->hdr_target);
-    glViewport(0, 0, (GLsizei)d->width, (GLsizei)d->height);
+static const gfx_target *scene_target(const frame *f) {
+    return wants_resolve(f) ? &f->targets->samples : &f->targets->hdr;
+}
+
+static void begin_scene(frame *f) {
+    const gfx_target *target = scene_target(f);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->name);
+    glViewport(0, 0, (GLsizei)target->width, (GLsizei)target->height);
     glDisable(GL_BLEND);
     glEnable(GL_CULL_FACE);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_TRUE);
-    glClearNamedFramebufferfv(d->hdr_target, GL_COLOR, 0, clear);
-    glClearNamedFramebufferfv(d->hdr_target, GL_DEPTH, 0, &depth);
-    d->passes++;
-    if (world->settings.debug == GFX_DEBUG_OVERDRAW) { // every fragment adds its share
-        glDisable(GL_DEPTH_TEST);
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
-    } else if (world->settings.prepass) {
-        d->passes++;
-        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        bool ok = gfx_draws_submit(d, world, list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glDepthFunc(GL_EQUAL);
-        glDepthMask(GL_FALSE);
-        if (!ok) {
-            return false;
-        }
-    }
-    bool ok = gfx_draws_submit(d, world, list, "scene.frag", features);
-    if (world->environment_set && !world->settings.debug) {
-        ok = ok && gfx_environment_draw(d, world);
-    }
-    if (ok && list->batches > list->opaque) {
-        ok = pass_blended(d, world, list, features);
-    }
-    glDepthMask(GL_TRUE);
-    glDisable(GL_BLEND);
+}
+
+static bool pass_clear(frame *f) {
+    const float *c = f->world->background;
+    const float clear[4] = {c[0], c[1], c[2], 1.0f}, depth = 0.0f;
+    begin_scene(f);
+    glClearNamedFramebufferfv(scene_target(f)->name, GL_COLOR, 0, clear);
+    glClearNamedFramebufferfv(scene_target(f)->name, GL_DEPTH, 0, &depth);
+    return true;
+}
+
+static bool pass_depth(frame *f) {
+    f->device->passes++;
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    bool ok = gfx_draws_submit(f->device, f->world, &f->list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     return ok;
 }
 
-static bool pass_tonemap(gfx_device *d) {
+static void resolve(const frame *f, GLbitfield what) {
+    GLint w = (GLint)f->targets->width, h = (GLint)f->targets->height;
+    glBlitNamedFramebuffer(f->targets->samples.name, f->targets->hdr.name, 0, 0, w, h, 0, 0, w, h,
+                           what, GL_NEAREST);
+}
+
+static bool pass_ambient(frame *f) {
+    if (wants_resolve(f)) {
+        resolve(f, GL_DEPTH_BUFFER_BIT);
+    }
+    return gfx_post_ambient(f->device, f->world, f->targets);
+}
+
+static bool pass_scene(frame *f) {
+    gfx_device *d = f->device;
     d->passes++;
-    GLuint program = gfx_shaders_get(&d->shaders, "fullscreen.vert", "tonemap.frag", 0);
+    begin_scene(f);
+    glBindTextureUnit(GFX_TEX_DFG, d->dfg_texture);
+    glBindTextureUnit(GFX_TEX_ENVIRONMENT, d->environment.filtered);
+    if (wants_overdraw(f)) { // every fragment adds its share
+        glDisable(GL_DEPTH_TEST);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE);
+    } else if (wants_depth(f)) {
+        glDepthFunc(GL_EQUAL);
+        glDepthMask(GL_FALSE);
+    }
+    return gfx_draws_submit(d, f->world, &f->list, "scene.frag", f->features);
+}
+
+static bool pass_sky(frame *f) { return gfx_environment_draw(f->device, f->world); }
+
+// Over what is there, reading depth and leaving it; premultiplied, so that highlights stay on clear
+// glass.
+static void begin_blending(void) {
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glDepthMask(GL_FALSE);
+}
+
+static bool pass_fog(frame *f) {
+    gfx_device *d = f->device;
+    GLuint program = gfx_shaders_get(&d->shaders, "sky.vert", "fog.frag", 0);
     if (!program) {
         return false;
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, d->ldr_target);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
+    d->passes++;
+    begin_blending();
+    glDepthFunc(GL_EQUAL); // where depth is still infinity
     glUseProgram(program);
     glBindVertexArray(d->empty_vao);
-    glBindTextureUnit(GFX_TEX_HDR, d->hdr_texture);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_BLEND);
     return true;
+}
+
+// From far to near. Occlusion is of the surfaces behind, not of these.
+static bool pass_blended(frame *f) {
+    f->device->passes++;
+    begin_blending();
+    glDepthFunc(GL_GREATER);
+    return gfx_draws_submit_blended(f->device, f->world, &f->list,
+                                    f->features & ~(uint32_t)GFX_FEATURE_AO);
+}
+
+static bool pass_resolve(frame *f) {
+    f->device->passes++;
+    resolve(f, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    return true;
+}
+
+static bool pass_finish(frame *f) {
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    return gfx_post_finish(f->device, f->world, f->targets);
+}
+
+// A view is drawn by these, in this order, each if it is wanted.
+static const struct {
+    bool (*wanted)(const frame *f);
+    bool (*draw)(frame *f);
+} passes[] = {
+    {always, pass_clear},          {wants_depth, pass_depth},     {wants_ambient, pass_ambient},
+    {always, pass_scene},          {wants_sky, pass_sky},         {wants_fog, pass_fog},
+    {wants_blended, pass_blended}, {wants_resolve, pass_resolve}, {always, pass_finish},
+};
+
+static bool draw_passes(frame *f) {
+    bool ok = true;
+    for (size_t i = 0; i < CORE_COUNT_OF(passes) && ok; ++i) {
+        ok = !passes[i].wanted(f) || passes[i].draw(f);
+    }
+    return ok;
 }
 
 // The albedo table of brdf.glsl, made once.
@@ -176,35 +281,33 @@ static bool make_dfg(gfx_device *d) {
     return true;
 }
 
-static bool draw_world(gfx_device *d, gfx_world *world) {
-    gfx_view view;
+static bool draw_world(gfx_device *d, gfx_world *world, gfx_targets *targets) {
+    frame f = {.device = d, .world = world, .targets = targets};
     gfx_camera camera = gfx_world_camera_or_default(world);
-    gfx_view_make(&camera, (float)d->width / (float)d->height, &view);
-    gfx_light_upload lights;
-    gfx_draw_list list;
+    gfx_view_make(&camera, (float)targets->width / (float)targets->height, &f.view);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CULL);
-    bool ok = gfx_geometry_update(&d->geometry, world);
+    bool ok = gfx_targets_fit(d, world, targets) && gfx_geometry_update(&d->geometry, world);
     if (ok) {
         gfx_materials_update(d, world);
-        gfx_draws_begin(d, world, &view);
-        gfx_draws_add_view(d, world, &view, &list);
-        gfx_shadows_plan(d, world, &view);
+        gfx_draws_begin(d, world, &f.view);
+        gfx_draws_add_view(d, world, &f.view, &f.list);
+        gfx_shadows_plan(d, world, &f.view);
         gfx_draws_upload(d, world);
-        world->stats.triangles = list.triangles;
+        world->stats.triangles = f.list.triangles;
     }
     core_stage_end(d->metrics, CORE_STAGE_GFX_CULL);
     if (!ok) {
         return false;
     }
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CLUSTER);
-    ok = gfx_lights_upload(d, world, &view, &lights);
+    ok = gfx_lights_upload(d, world, &f.view, &f.lights);
     core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_MATERIALS, d->materials.buffer);
     ok = ok && gfx_shadows_draw(d, world) && gfx_environment_update(d, world);
-    upload_view(d, world, &view, &lights);
-    ok = ok && pass_scene(d, world, &list, scene_features(d, world, lights.clustered)) &&
-         pass_tonemap(d) && gfx_quads_draw(d, world);
+    upload_view(d, world, &f.view, &f.lights);
+    f.features = scene_features(&f);
+    ok = ok && draw_passes(&f) && gfx_quads_draw(d, world);
     core_stage_end(d->metrics, CORE_STAGE_GFX_DRAW);
     return ok;
 }
@@ -222,7 +325,7 @@ bool gfx_device_render(gfx_device *device, gfx_world *world) {
     }
     begin_turn(d);
     begin_timer(d);
-    bool ok = (d->dfg_texture || make_dfg(d)) && draw_world(d, world);
+    bool ok = (d->dfg_texture || make_dfg(d)) && draw_world(d, world, &d->targets);
     end_turn(d);
     return ok && gfx_device_check(d, "gfx_device_render", errors);
 }

@@ -115,7 +115,15 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     int debug;                                // GFX_DEBUG_*
     int shadows;                              // GFX_SHADOWS_*
     float shadow_size, shadow_distance, cascades;
+    int msaa, fxaa; // msaa: samples are 1 << msaa
+    float ao, ao_radius, ao_slices, ao_steps;
+    float bloom, bloom_threshold, bloom_levels, bloom_spread;
+    int auto_exposure;
+    float key, adapt;
+    float contrast, saturation, lift[3], gain[3];
+    float fog, fog_falloff, fog_base, fog_color[3];
 } gfx_settings;
+void gfx_settings_default(gfx_settings *settings);
 
 struct gfx_world {
     uint64_t id; // no two worlds of a process share it: devices key their copies by it

@@ -7,6 +7,34 @@
 #include <stdlib.h>
 #include <string.h>
 
+void gfx_settings_default(gfx_settings *s) {
+    *s = (gfx_settings){
+        .grid = {16, 9, 24},
+        .first_slice = 5.0f,
+        .assign = 2, // simd
+        .exposure = 1.0f,
+        .instancing = 1,
+        .culling = 1,
+        .prepass = 1,
+        .levels = 1,
+        .shadows = GFX_SHADOWS_PCF,
+        .shadow_size = 1024.0f,
+        .shadow_distance = 80.0f,
+        .cascades = 3.0f,
+        .ao_radius = 0.5f,
+        .ao_slices = 2.0f,
+        .ao_steps = 4.0f,
+        .bloom_levels = 6.0f,
+        .bloom_spread = 0.7f,
+        .key = 0.18f,
+        .adapt = 1.0f,
+        .contrast = 1.0f,
+        .saturation = 1.0f,
+        .gain = {1.0f, 1.0f, 1.0f},
+        .fog_color = {0.5f, 0.55f, 0.6f},
+    };
+}
+
 int gfx_find_name(const char *name, const char *const *names, int count) {
     for (int i = 0; name && i < count; ++i) {
         if (strcmp(name, names[i]) == 0) {
@@ -21,7 +49,7 @@ bool gfx_fail_name(const char *what, const char *name, const char *const *names,
         return core_fail("gfx: no %s was named", what);
     }
     const char *nearest = core_nearest(name, names, (size_t)count);
-    char list[256] = "";
+    char list[1024] = "";
     for (int i = 0; i < count; ++i) {
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
@@ -55,6 +83,28 @@ static bool set_number(const char *setting, const char *value, float least, floa
     return true;
 }
 
+// One number for all channels, or three.
+static bool set_color(const char *setting, const char *value, float least, float most,
+                      float out[3]) {
+    float c[3];
+    char rest;
+    int n = sscanf(value, "%f,%f,%f%c", &c[0], &c[1], &c[2], &rest);
+    if (n == 1 && !strchr(value, ',')) {
+        return set_number(setting, value, least, most, &c[0]) &&
+               (out[0] = out[1] = out[2] = c[0], true);
+    }
+    bool ok = n == 3;
+    for (int i = 0; i < 3 && ok; ++i) {
+        ok = c[i] >= least && c[i] <= most;
+    }
+    if (!ok) {
+        return core_fail("gfx.%s: \"%s\", expected a number in %g..%g or three as R,G,B", setting,
+                         value, (double)least, (double)most);
+    }
+    memcpy(out, c, sizeof c);
+    return true;
+}
+
 static bool set_grid(gfx_settings *s, const char *value) {
     unsigned x, y, z;
     char rest;
@@ -67,36 +117,60 @@ static bool set_grid(gfx_settings *s, const char *value) {
     return true;
 }
 
-// Every setting: a choice of names (an int in gfx_settings) or a number in a range (a float). The
-// grid, whose value has a form of its own, is apart.
+// Every setting: a choice of names (an int in gfx_settings), a number in a range (a float) or three
+// (a colour). The grid, whose value has a form of its own, is apart.
 typedef struct setting {
     const char *name;
     size_t offset;
     const char *choice[7]; // empty: a number
     float least, most;
+    bool color;
 } setting;
+#define NUMBER(name, least, most)                                                                  \
+    { #name, offsetof(gfx_settings, name), {NULL }, least, most, false }
+#define COLOR(name, least, most)                                                                   \
+    { #name, offsetof(gfx_settings, name), {NULL }, least, most, true }
+#define CHOICE(name, member, ...)                                                                  \
+    { name, offsetof(gfx_settings, member), {__VA_ARGS__}, 0, 0, false }
 
 static const setting table[] = {
-    {"render", offsetof(gfx_settings, render), {"auto", "forward", "clustered", "none"}, 0, 0},
-    {"slices", offsetof(gfx_settings, linear_slices), {"exponential", "linear"}, 0, 0},
-    {"assign", offsetof(gfx_settings, assign), {"naive", "per_light", "simd", "gpu"}, 0, 0},
-    {"first_slice", offsetof(gfx_settings, first_slice), {NULL}, 0.0f, 1e6f},
-    {"cell_cap", offsetof(gfx_settings, cell_cap), {NULL}, 0.0f, 65536.0f},
-    {"exposure", offsetof(gfx_settings, exposure), {NULL}, 1e-6f, 1e6f},
-    {"tonemap", offsetof(gfx_settings, tonemap), {"neutral", "linear"}, 0, 0},
-    {"instancing", offsetof(gfx_settings, instancing), {"off", "on"}, 0, 0},
-    {"shadows", offsetof(gfx_settings, shadows), {"off", "pcf", "soft"}, 0, 0},
-    {"shadow_size", offsetof(gfx_settings, shadow_size), {NULL}, 16.0f, 8192.0f},
-    {"shadow_distance", offsetof(gfx_settings, shadow_distance), {NULL}, 1.0f, 1e6f},
-    {"cascades", offsetof(gfx_settings, cascades), {NULL}, 1.0f, 4.0f},
-    {"debug",
-     offsetof(gfx_settings, debug),
-     {"off", "normals", "depth", "lights", "clusters", "overdraw"},
-     0,
-     0},
-    {"prepass", offsetof(gfx_settings, prepass), {"off", "on"}, 0, 0},
-    {"levels", offsetof(gfx_settings, levels), {"off", "on"}, 0, 0},
-    {"culling", offsetof(gfx_settings, culling), {"off", "on"}, 0, 0},
+    CHOICE("render", render, "auto", "forward", "clustered", "none"),
+    CHOICE("slices", linear_slices, "exponential", "linear"),
+    CHOICE("assign", assign, "naive", "per_light", "simd", "gpu"),
+    NUMBER(first_slice, 0.0f, 1e6f),
+    NUMBER(cell_cap, 0.0f, 65536.0f),
+    NUMBER(exposure, 1e-6f, 1e6f),
+    CHOICE("tonemap", tonemap, "neutral", "linear"),
+    CHOICE("instancing", instancing, "off", "on"),
+    CHOICE("shadows", shadows, "off", "pcf", "soft"),
+    NUMBER(shadow_size, 16.0f, 8192.0f),
+    NUMBER(shadow_distance, 1.0f, 1e6f),
+    NUMBER(cascades, 1.0f, 4.0f),
+    CHOICE("debug", debug, "off", "normals", "depth", "lights", "clusters", "overdraw"),
+    CHOICE("prepass", prepass, "off", "on"),
+    CHOICE("levels", levels, "off", "on"),
+    CHOICE("culling", culling, "off", "on"),
+    CHOICE("msaa", msaa, "off", "2", "4", "8"),
+    CHOICE("fxaa", fxaa, "off", "on"),
+    NUMBER(ao, 0.0f, 1.0f),
+    NUMBER(ao_radius, 0.001f, 1e4f),
+    NUMBER(ao_slices, 1.0f, 16.0f),
+    NUMBER(ao_steps, 1.0f, 32.0f),
+    NUMBER(bloom, 0.0f, 1.0f),
+    NUMBER(bloom_threshold, 0.0f, 1e6f),
+    NUMBER(bloom_levels, 1.0f, 8.0f),
+    NUMBER(bloom_spread, 0.0f, 1.0f),
+    CHOICE("auto_exposure", auto_exposure, "off", "on"),
+    NUMBER(key, 1e-4f, 1e4f),
+    NUMBER(adapt, 1e-3f, 1.0f),
+    NUMBER(contrast, 0.0f, 4.0f),
+    NUMBER(saturation, 0.0f, 4.0f),
+    COLOR(lift, -1.0f, 1.0f),
+    COLOR(gain, 0.0f, 16.0f),
+    NUMBER(fog, 0.0f, 1e3f),
+    NUMBER(fog_falloff, 0.0f, 1e3f),
+    NUMBER(fog_base, -1e6f, 1e6f),
+    COLOR(fog_color, 0.0f, 1e6f),
 };
 
 bool gfx_world_set(gfx_world *world, const char *name, const char *value) {
@@ -121,6 +195,9 @@ bool gfx_world_set(gfx_world *world, const char *name, const char *value) {
     while (s->choice[choices]) {
         choices++;
     }
-    return choices ? set_choice(name, value, s->choice, choices, field)
-                   : set_number(name, value, s->least, s->most, field);
+    if (choices) {
+        return set_choice(name, value, s->choice, choices, field);
+    }
+    return s->color ? set_color(name, value, s->least, s->most, field)
+                    : set_number(name, value, s->least, s->most, field);
 }

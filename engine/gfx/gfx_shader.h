@@ -24,7 +24,12 @@
     X(DEBUG, "USE_DEBUG")                                                                          \
     X(DEPTH_ONLY, "DEPTH_ONLY")                                                                    \
     X(TEXT, "USE_TEXT")                                                                            \
-    X(IMAGE, "USE_IMAGE")
+    X(IMAGE, "USE_IMAGE")                                                                          \
+    X(AO, "USE_AO")                                                                                \
+    X(FOG, "USE_FOG")                                                                              \
+    X(BLOOM, "USE_BLOOM")                                                                          \
+    X(AUTO_EXPOSURE, "USE_AUTO_EXPOSURE")                                                          \
+    X(GRADE, "USE_GRADE")
 
 #define GFX_FEATURE_INDEX_(id, name) GFX_FEATURE_INDEX_##id,
 #define GFX_FEATURE_BIT_(id, name)   GFX_FEATURE_##id = 1u << GFX_FEATURE_INDEX_##id,

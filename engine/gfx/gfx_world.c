@@ -32,18 +32,7 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
     w->id = next_world_id();
     w->jobs = desc->jobs;
     w->metrics = desc->metrics;
-    w->settings = (gfx_settings){.grid = {16, 9, 24},
-                                 .first_slice = 5.0f,
-                                 .assign = GFX_CLUSTER_SIMD,
-                                 .exposure = 1.0f,
-                                 .instancing = 1,
-                                 .culling = 1,
-                                 .prepass = 1,
-                                 .levels = 1,
-                                 .shadows = GFX_SHADOWS_PCF,
-                                 .shadow_size = 1024.0f,
-                                 .shadow_distance = 80.0f,
-                                 .cascades = 3.0f};
+    gfx_settings_default(&w->settings);
     const float ambient[3] = {0.32f, 0.36f, 0.42f}, background[3] = {0.11f, 0.14f, 0.18f};
     memcpy(w->ambient, ambient, sizeof ambient);
     memcpy(w->background, background, sizeof background);
