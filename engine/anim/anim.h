@@ -223,6 +223,16 @@ typedef struct anim_machine_desc {
 anim_machine_desc anim_machine_desc_default(void);
 // All clips must be of one skeleton. Errors name the state or transition and the nearest name.
 anim_machine anim_machine_create(anim_world *world, const anim_machine_desc *desc);
+// Adds states and transitions to a machine that may be in use: all of them, or none (false). They
+// come after those it has and may name them; `initial` and parameters stay empty. Not to be called
+// from callbacks of a machine.
+bool anim_machine_extend(anim_world *world, anim_machine machine, const anim_machine_desc *more);
+// Takes such additions back: keeps the first states and transitions. False while one of the others
+// plays, or leads from or to.
+bool anim_machine_trim(anim_world *world, anim_machine machine, uint32_t states,
+                       uint32_t transitions);
+void anim_machine_size(const anim_world *world, anim_machine machine, uint32_t *states,
+                       uint32_t *transitions);
 bool anim_machine_destroy(anim_world *world, anim_machine machine); // false while in use
 bool anim_machine_alive(const anim_world *world, anim_machine machine);
 // Graphviz text of the machine; core_free it. `instance` (null: none) marks its present state.

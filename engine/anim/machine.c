@@ -155,6 +155,20 @@ static bool add_transition(anim_machine_res *m, const anim_transition_desc *d) {
     return check_trigger(m, t, d);
 }
 
+static bool add_all(anim_world *w, anim_machine_res *m, const anim_machine_desc *d) {
+    for (uint32_t i = 0; i < d->state_count; i++) {
+        if (!add_state(w, m, &d->state[i])) {
+            return false;
+        }
+    }
+    for (uint32_t i = 0; i < d->transition_count; i++) {
+        if (!add_transition(m, &d->transition[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool fill(anim_world *w, anim_machine_res *m, const anim_machine_desc *d) {
     for (uint32_t i = 0; i < d->parameter_count; i++) {
         if (!copy_name(m->parameter[i], d->parameter[i].name, "parameter")) {
@@ -167,15 +181,8 @@ static bool fill(anim_world *w, anim_machine_res *m, const anim_machine_desc *d)
         m->start_value[i] = d->parameter[i].value;
         m->parameter_count++;
     }
-    for (uint32_t i = 0; i < d->state_count; i++) {
-        if (!add_state(w, m, &d->state[i])) {
-            return false;
-        }
-    }
-    for (uint32_t i = 0; i < d->transition_count; i++) {
-        if (!add_transition(m, &d->transition[i])) {
-            return false;
-        }
+    if (!add_all(w, m, d)) {
+        return false;
     }
     int32_t initial = d->initial ? find_state(m, d->initial) : 0;
     m->initial = (uint32_t)initial;
@@ -191,24 +198,44 @@ static void count_users(anim_world *w, const anim_machine_res *m, int by) {
     }
 }
 
-anim_machine anim_machine_create(anim_world *w, const anim_machine_desc *d) {
-    if (!d || d->cookie != ANIM_COOKIE || d->state_count == 0 || d->state_count > ANIM_MAX_STATES ||
-        d->parameter_count > ANIM_MAX_PARAMETERS || d->transition_count > 65536) {
-        core_fail("state machine: expected a description made by anim_machine_desc_default() with "
-                  "1..%u states and at most %u parameters",
-                  ANIM_MAX_STATES, ANIM_MAX_PARAMETERS);
-        return CORE_NULL_HANDLE;
-    }
-    size_t points = 0;
+static bool check_counts(const anim_machine_desc *d, size_t states, size_t transitions) {
+    return (d && d->cookie == ANIM_COOKIE && states > 0 && states <= ANIM_MAX_STATES &&
+            d->parameter_count <= ANIM_MAX_PARAMETERS && transitions <= 65536) ||
+           core_fail("state machine: expected a description made by anim_machine_desc_default() "
+                     "with 1..%u states, at most %u parameters and 65536 transitions",
+                     ANIM_MAX_STATES, ANIM_MAX_PARAMETERS);
+}
+
+// Room for what `base` has (NULL: nothing) and `d` adds, in one block; holds a copy of base.
+static anim_machine_res *make_room(const anim_machine_res *base, const anim_machine_desc *d) {
+    static const anim_machine_res empty;
+    base = base ? base : &empty;
+    size_t states = base->state_count + d->state_count;
+    size_t transitions = base->transition_count + d->transition_count;
+    size_t points = base->point_count;
     for (uint32_t i = 0; i < d->state_count; i++) {
         points += d->state[i].blend_count;
     }
-    anim_machine_res *m = core_alloc(sizeof *m + d->state_count * sizeof(anim_state) +
-                                     d->transition_count * sizeof(anim_transition) +
-                                     points * sizeof(anim_blend_point));
+    anim_machine_res *m =
+        core_alloc(sizeof *m + states * sizeof(anim_state) + transitions * sizeof(anim_transition) +
+                   points * sizeof(anim_blend_point));
+    *m = *base;
     m->state = (anim_state *)(m + 1);
-    m->transition = (anim_transition *)(m->state + d->state_count);
-    m->point = (anim_blend_point *)(m->transition + d->transition_count);
+    m->transition = (anim_transition *)(m->state + states);
+    m->point = (anim_blend_point *)(m->transition + transitions);
+    if (base != &empty) {
+        memcpy(m->state, base->state, base->state_count * sizeof(anim_state));
+        memcpy(m->transition, base->transition, base->transition_count * sizeof(anim_transition));
+        memcpy(m->point, base->point, base->point_count * sizeof(anim_blend_point));
+    }
+    return m;
+}
+
+anim_machine anim_machine_create(anim_world *w, const anim_machine_desc *d) {
+    if (!check_counts(d, d ? d->state_count : 0, d ? d->transition_count : 0)) {
+        return CORE_NULL_HANDLE;
+    }
+    anim_machine_res *m = make_room(NULL, d);
     core_handle h = fill(w, m, d) ? anim_resource_add(&w->machines, m) : CORE_NULL_HANDLE;
     if (core_handle_is_null(h)) {
         core_free(m);
@@ -216,6 +243,74 @@ anim_machine anim_machine_create(anim_world *w, const anim_machine_desc *d) {
     }
     count_users(w, m, 1);
     return h;
+}
+
+static void replace(anim_world *w, anim_machine h, anim_machine_res *old, anim_machine_res *m) {
+    count_users(w, m, 1);
+    count_users(w, old, -1);
+    w->machines.item[core_columns_row(&w->machines.set, h)] = m;
+    core_free(old);
+}
+
+bool anim_machine_extend(anim_world *w, anim_machine h, const anim_machine_desc *d) {
+    anim_machine_res *old = anim_get_machine(w, h);
+    if (!old || !d || d->parameter_count > 0 || d->initial) {
+        return core_fail(old ? "state machine: what is added has states and transitions only"
+                             : "state machine: there is none to extend");
+    }
+    if (!check_counts(d, old->state_count + (size_t)d->state_count,
+                      old->transition_count + (size_t)d->transition_count)) {
+        return false;
+    }
+    anim_machine_res *m = make_room(old, d);
+    if (!add_all(w, m, d)) {
+        core_free(m);
+        return false;
+    }
+    replace(w, h, old, m);
+    return true;
+}
+
+void anim_machine_size(const anim_world *w, anim_machine h, uint32_t *states,
+                       uint32_t *transitions) {
+    const anim_machine_res *m = anim_get_machine(w, h);
+    *states = m ? m->state_count : 0;
+    *transitions = m ? m->transition_count : 0;
+}
+
+bool anim_machine_trim(anim_world *w, anim_machine h, uint32_t states, uint32_t transitions) {
+    anim_machine_res *old = anim_get_machine(w, h);
+    if (!old || states == 0 || states > old->state_count || transitions > old->transition_count) {
+        return core_fail("state machine: there are no %u states and %u transitions to keep", states,
+                         transitions);
+    }
+    for (uint32_t p = 0; p < core_columns_count(&w->players.set); p++) {
+        bool uses = core_handle_equal(w->players.machine[p], h);
+        if (uses && (w->players.now[p].state >= (int32_t)states ||
+                     w->players.from[p].state >= (int32_t)states)) {
+            return core_fail(
+                "state machine: state \"%s\" plays; it cannot be taken away",
+                old->state[CORE_MAX(w->players.now[p].state, w->players.from[p].state)].name);
+        }
+    }
+    anim_machine_res *m = make_room(old, &(anim_machine_desc){0});
+    m->state_count = states;
+    m->transition_count = transitions;
+    m->point_count = m->event_count = 0;
+    for (uint32_t i = 0; i < states; i++) {
+        m->point_count += m->state[i].point_count;
+    }
+    for (uint32_t i = 0; i < transitions; i++) {
+        if (m->transition[i].when == ANIM_WHEN_EVENT) {
+            m->event_count = CORE_MAX(m->event_count, m->transition[i].event + 1);
+        }
+        if (m->transition[i].to >= (int32_t)states || m->transition[i].from >= (int32_t)states) {
+            core_free(m);
+            return core_fail("state machine: transition %u leads to a state that would go", i);
+        }
+    }
+    replace(w, h, old, m);
+    return true;
 }
 
 bool anim_machine_destroy(anim_world *w, anim_machine h) {

@@ -88,6 +88,7 @@ bool app_find_scene(const char *given, app_scene_path *out) {
                              out->folder);
         }
         strcpy(out->entry, "main.lua");
+        out->is_game = true;
         snprintf(path, sizeof path, "%s/conf.lua", out->folder);
         out->has_conf = is_file(path);
         return true;

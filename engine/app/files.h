@@ -12,7 +12,8 @@ bool app_output_ready(const char *path);
 typedef struct app_scene_path {
     char folder[APP_PATH_MAX]; // to be mounted
     char entry[256];           // virtual path in it
-    bool has_conf;             // the folder has a conf.lua and the scene is a folder
+    bool is_game;              // the scene is a folder: it may have conf.lua and mods
+    bool has_conf;
 } app_scene_path;
 // False + core_fail when there is no such scene (names the nearest file there).
 bool app_find_scene(const char *given, app_scene_path *out);

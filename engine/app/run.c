@@ -171,7 +171,7 @@ app_run *app_run_create(const app_options *opt) {
     r->metrics = r->report.metrics = core_metrics_create();
     if (!r->metrics) {
         app_fail(r, APP_EXIT_ENVIRONMENT);
-    } else if (!app_find_scene(opt->scene, &r->path) || !outputs_ready(opt)) {
+    } else if (!app_find_scene(opt->scene, &r->path) || !app_mods_find(r) || !outputs_ready(opt)) {
         app_fail(r, APP_EXIT_USAGE);
     } else if (choose_simd(r) && app_start_read(r)) {
         strcpy(r->entry, r->path.entry);

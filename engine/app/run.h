@@ -42,6 +42,8 @@ typedef struct app_run {
     app_replay *replay;
     app_journal_header start; // what the run was started with: given, or read from a recording
     const char *argument[16];
+    char mod[APP_MAX_MODS][APP_PATH_MAX]; // folders
+    uint32_t mod_count;
     char param[APP_MAX_PARAMS][64]; // names that the script asked for
     uint32_t param_count;
     uint64_t last_step;  // APP_OPEN_END: until told
@@ -72,6 +74,8 @@ bool app_fail(app_run *r, app_exit why); // keeps the first; false
 // start.c
 bool app_start_read(app_run *r);          // into r->start; false: r->failed says why
 void app_start_compare_files(app_run *r); // hashes them; warns where a recording has others
+// mods.c
+bool app_mods_find(app_run *r); // into r->mod; false + core_fail
 // session.c
 bool app_scene_open(app_run *r);  // false: r->failed says why
 void app_scene_close(app_run *r); // quit callback, expectations

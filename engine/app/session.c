@@ -161,8 +161,8 @@ bool app_scene_open(app_run *r) {
     if (!configure(r) || !apply_settings(r)) {
         return false;
     }
-    for (uint32_t i = 0; i < r->opt->mod_count; i++) {
-        if (!script_add_mod(r->script, r->opt->mod[i])) {
+    for (uint32_t i = 0; i < r->mod_count; i++) {
+        if (!script_add_mod(r->script, r->mod[i])) {
             return app_fail(r, APP_EXIT_USAGE);
         }
     }

@@ -96,8 +96,8 @@ void app_start_compare_files(app_run *r) {
     r->start.file_count = 0;
     hash_scene_file(r, r->path.entry);
     hash_scene_file(r, "conf.lua");
-    for (uint32_t i = 0; i < r->opt->mod_count; i++) {
-        hash_mod(r, r->opt->mod[i]);
+    for (uint32_t i = 0; i < r->mod_count; i++) {
+        hash_mod(r, r->mod[i]);
     }
     for (uint32_t i = 0; r->replay && i < was.file_count; i++) {
         if (!has_file(&r->start, &was.file[i])) {

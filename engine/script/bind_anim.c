@@ -394,6 +394,11 @@ static const bind_fn clip_methods[] = {
      .run = clip_destroy},
     {0}};
 static const bind_fn machine_methods[] = {
+    {"extend", "Adds states and transitions, for all animators that use the machine.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(bind_machine_extension, more), "what to add",
+                .fields = bind_machine_more_fields}),
+     NULL, sizeof(bind_machine_extension), BIND_LOAD | BIND_FIXED, .mod = true, .cost = 500,
+     .run = bind_machine_extend},
     {"getDot", "The machine as Graphviz text.", NULL, BIND_RETURNS({"text", "string", NULL}), SELF,
      BIND_RUNNING, .run = machine_get_dot},
     {"destroy", "Removes it; animators that use it must go first.", NULL, NULL, SELF, BIND_SIM,

@@ -21,5 +21,15 @@ typedef struct bind_machine_call {
 } bind_machine_call;
 extern const bind_arg bind_machine_fields[];
 bind_handler bind_machine_new;
+// Those of Machine:extend; the options stand behind self.
+typedef struct bind_machine_more {
+    bind_list states, transitions;
+} bind_machine_more;
+typedef struct bind_machine_extension {
+    core_handle self;
+    bind_machine_more more;
+} bind_machine_extension;
+extern const bind_arg bind_machine_more_fields[];
+bind_handler bind_machine_extend;
 
 #endif

@@ -1,6 +1,7 @@
 // corsac.anim.newMachine: tables of states and transitions whose functions are Lua's.
 #include "script/bind_anim.h"
 #include "script/internal.h"
+#include "script/mod.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -104,12 +105,13 @@ static int take(lua_State *L, const char *field) {
     return luaL_ref(L, LUA_REGISTRYINDEX);
 }
 
-// Functions of list[i] in the options table at stack index 1.
-static lua_functions *functions_of(script *s, lua_State *L, const char *list, uint32_t i) {
+// Functions of list[i] in the options table at a stack index.
+static lua_functions *functions_of(script *s, lua_State *L, int table, const char *list,
+                                   uint32_t i) {
     lua_functions *f = lua_newuserdata(L, sizeof *f);
     luaL_ref(L, LUA_REGISTRYINDEX);
     f->s = s;
-    lua_getfield(L, 1, list);
+    lua_getfield(L, table, list);
     lua_rawgeti(L, -1, (int)i + 1);
     f->enter = take(L, "onEnter");
     f->leave = take(L, "onExit");
@@ -134,7 +136,7 @@ static const anim_blend_point *read_points(lua_State *L, const bind_list *list) 
     return point;
 }
 
-static void read_state(script *s, lua_State *L, const state_options *o, uint32_t i,
+static void read_state(script *s, lua_State *L, int table, const state_options *o, uint32_t i,
                        anim_state_desc *out) {
     *out = (anim_state_desc){
         .name = o->name, .clip = o->clip, .loop = (anim_loop)o->loop, .speed = o->speed};
@@ -142,7 +144,7 @@ static void read_state(script *s, lua_State *L, const state_options *o, uint32_t
     out->blend_count = o->blend.count;
     out->blend_parameter = o->blend_parameter;
     if (o->has_enter || o->has_exit || o->has_tick || o->has_get_speed) {
-        out->ctx = functions_of(s, L, "states", i);
+        out->ctx = functions_of(s, L, table, "states", i);
         out->on_enter = o->has_enter ? call_enter : NULL;
         out->on_exit = o->has_exit ? call_exit : NULL;
         out->on_tick = o->has_tick ? call_tick : NULL;
@@ -150,8 +152,8 @@ static void read_state(script *s, lua_State *L, const state_options *o, uint32_t
     }
 }
 
-static void read_transition(script *s, lua_State *L, const transition_options *o, uint32_t i,
-                            anim_transition_desc *out) {
+static void read_transition(script *s, lua_State *L, int table, const transition_options *o,
+                            uint32_t i, anim_transition_desc *out) {
     int kinds = o->has_condition + (o->event != NULL) + (o->parameter != NULL);
     if (kinds > 1) {
         bind_error(L,
@@ -175,7 +177,7 @@ static void read_transition(script *s, lua_State *L, const transition_options *o
     if (o->has_condition) {
         out->when = ANIM_WHEN_CONDITION;
         out->condition = condition;
-        out->ctx = functions_of(s, L, "transitions", i);
+        out->ctx = functions_of(s, L, table, "transitions", i);
     }
 }
 
@@ -204,25 +206,32 @@ static uint32_t read_parameters(lua_State *L, anim_parameter_desc out[ANIM_MAX_P
     return count;
 }
 
+// States and transitions of the options at stack index `table`, in memory of Lua's.
+static anim_machine_desc read_machine(script *s, lua_State *L, int table, const bind_list *states,
+                                      const bind_list *transitions) {
+    anim_machine_desc desc = anim_machine_desc_default();
+    anim_state_desc *state = lua_newuserdata(L, (states->count + 1) * sizeof *state);
+    anim_transition_desc *transition =
+        lua_newuserdata(L, (transitions->count + 1) * sizeof *transition);
+    for (uint32_t i = 0; i < states->count; i++) {
+        read_state(s, L, table, (const state_options *)states->items + i, i, &state[i]);
+    }
+    for (uint32_t i = 0; i < transitions->count; i++) {
+        read_transition(s, L, table, (const transition_options *)transitions->items + i, i,
+                        &transition[i]);
+    }
+    desc.state = state;
+    desc.state_count = states->count;
+    desc.transition = transition;
+    desc.transition_count = transitions->count;
+    return desc;
+}
+
 int bind_machine_new(script *s, lua_State *L, void *args) {
     const bind_machine_options *o = &((bind_machine_call *)args)->options;
     anim_parameter_desc parameter[ANIM_MAX_PARAMETERS];
-    anim_machine_desc desc = anim_machine_desc_default();
-    anim_state_desc *state = lua_newuserdata(L, (o->states.count + 1) * sizeof *state);
-    anim_transition_desc *transition =
-        lua_newuserdata(L, (o->transitions.count + 1) * sizeof *transition);
-    for (uint32_t i = 0; i < o->states.count; i++) {
-        read_state(s, L, (const state_options *)o->states.items + i, i, &state[i]);
-    }
-    for (uint32_t i = 0; i < o->transitions.count; i++) {
-        read_transition(s, L, (const transition_options *)o->transitions.items + i, i,
-                        &transition[i]);
-    }
+    anim_machine_desc desc = read_machine(s, L, 1, &o->states, &o->transitions);
     desc.initial = o->initial;
-    desc.state = state;
-    desc.state_count = o->states.count;
-    desc.transition = transition;
-    desc.transition_count = o->transitions.count;
     desc.parameter = parameter;
     desc.parameter_count = o->has_parameters ? read_parameters(L, parameter) : 0;
     anim_machine machine = anim_machine_create(scene_anim(s->scene), &desc);
@@ -231,6 +240,21 @@ int bind_machine_new(script *s, lua_State *L, void *args) {
     }
     bind_push(s, L, &bind_machine_type, machine);
     return 1;
+}
+
+int bind_machine_extend(script *s, lua_State *L, void *args) {
+    const bind_machine_extension *a = args;
+    anim_world *w = scene_anim(s->scene);
+    if (s->as_mod) {
+        mod_extended before = {.machine = a->self};
+        anim_machine_size(w, a->self, &before.states, &before.transitions);
+        script_mod_extends(s, L, &before, a->more.states.count + a->more.transitions.count);
+    }
+    anim_machine_desc more = read_machine(s, L, 2, &a->more.states, &a->more.transitions);
+    if (!anim_machine_extend(w, a->self, &more)) {
+        bind_fail(L);
+    }
+    return 0;
 }
 
 // ---- declarations ----
@@ -302,4 +326,11 @@ const bind_arg bind_machine_fields[] = {
     {"parameters", BIND_TABLE, BIND_AT(bind_machine_options, parameters),
      "names with their first values", .optional = true, .def_text = "none",
      BIND_GIVEN(bind_machine_options, has_parameters)},
+    {0}};
+
+const bind_arg bind_machine_more_fields[] = {
+    {"states", BIND_LIST, BIND_AT(bind_machine_more, states), "as in corsac.anim.newMachine",
+     .optional = true, .fields = state_fields, .size = sizeof(state_options)},
+    {"transitions", BIND_LIST, BIND_AT(bind_machine_more, transitions), "tried after those it has",
+     .optional = true, .fields = transition_fields, .size = sizeof(transition_options)},
     {0}};

@@ -5,12 +5,9 @@
 #include "core/log.h"
 #include "script/internal.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 
 core_rng *script_mod_stream(script_mod *m) { return &m->rng; }
 
@@ -79,7 +76,21 @@ static int unmake(lua_State *L) {
             destroy->run(m->view, L, &made.handle);
         }
     }
+    while (m->extended_count > 0) {
+        mod_extended *e = &m->extended[--m->extended_count];
+        anim_machine_trim(scene_anim(m->view->scene), e->machine, e->states, e->transitions);
+    }
     return 0;
+}
+
+void script_mod_extends(script *s, lua_State *L, const mod_extended *before, uint32_t parts) {
+    script_mod *m = s->as_mod;
+    if (m->extended_count == MOD_EXTENDED || m->fsm_parts + parts > MOD_FSM_PARTS) {
+        bind_error(L, "a mod adds at most %d states and transitions to machines, to %d in one call",
+                   MOD_FSM_PARTS, MOD_EXTENDED);
+    }
+    m->fsm_parts += parts;
+    m->extended[m->extended_count++] = *before;
 }
 
 static void log_mod(const script_mod *m, core_log_level level, const char *text) {
@@ -112,7 +123,7 @@ static bool begin_call(script_mod *m, int64_t budget) {
     if (m->guard.running) {
         return false;
     }
-    m->journal_count = m->made_count = 0;
+    m->journal_count = m->made_count = m->extended_count = 0;
     m->text_used = 0;
     m->view->phase = m->game->phase;
     m->began = core_clock_ns();
@@ -231,6 +242,27 @@ static void keep_text(script_mod *m, lua_State *L, const char **text) {
     }
 }
 
+// Arguments without pointers into the state, but for strings.
+static bool stands_alone(const bind_arg *arg) {
+    for (; arg && arg->name; arg++) {
+        bool inside = arg->kind == BIND_OPTIONS && stands_alone(arg->fields);
+        if (arg->kind >= BIND_OPTIONS && !inside) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void keep_texts(script_mod *m, lua_State *L, const bind_arg *arg, unsigned char *args) {
+    for (; arg && arg->name; arg++) {
+        if (arg->kind == BIND_STRING) {
+            keep_text(m, L, (const char **)(void *)(args + arg->at));
+        } else if (arg->kind == BIND_OPTIONS) {
+            keep_texts(m, L, arg->fields, args + arg->at);
+        }
+    }
+}
+
 bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_type *type,
                       core_handle self, const void *args, size_t size) {
     script_mod *m = s->as_mod;
@@ -238,10 +270,8 @@ bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_typ
     if (!simulation || fn->returns || fn->immediate || size > MOD_ARGS_BYTES) {
         return false;
     }
-    for (const bind_arg *arg = fn->args; arg && arg->name; arg++) {
-        if (arg->kind >= BIND_OPTIONS) {
-            return false; // such arguments point into the state
-        }
+    if (!stands_alone(fn->args)) {
+        return false;
     }
     if (m->journal_count == MOD_JOURNAL_MAX) {
         bind_error(L, "one call of a mod makes at most %d changes", MOD_JOURNAL_MAX);
@@ -249,10 +279,8 @@ bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_typ
     mod_change *c = &m->journal[m->journal_count++];
     *c = (mod_change){.fn = fn, .type = type, .self = self};
     memcpy(c->args, args, size);
-    for (const bind_arg *arg = fn->args; !fn->numbers && arg && arg->name; arg++) {
-        if (arg->kind == BIND_STRING) {
-            keep_text(m, L, (const char **)(void *)(c->args + arg->at));
-        }
+    if (!fn->numbers) {
+        keep_texts(m, L, fn->args, c->args);
     }
     return true;
 }
@@ -496,43 +524,6 @@ static void destroy_mod(script_mod *m) {
     core_free(m);
 }
 
-// Code comes from main.lua alone: names that trusted code could load or run are refused, and links.
-static bool good_assets(const char *folder, int depth) {
-    DIR *entries = opendir(folder);
-    bool good = depth < 16;
-    for (struct dirent *entry; good && entries && (entry = readdir(entries));) {
-        const char *name = entry->d_name;
-        size_t length = strlen(name);
-        char path[1024];
-        struct stat info;
-        if (strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
-            continue;
-        }
-        snprintf(path, sizeof path, "%s/%s", folder, name);
-        bool code = length > 4 && strcasecmp(name + length - 4, ".lua") == 0;
-        bool shaders = depth == 0 && (strcmp(name, "shaders") == 0 || strcmp(name, "corsac") == 0);
-        good = !code && !shaders && lstat(path, &info) == 0 && !S_ISLNK(info.st_mode) &&
-               (!S_ISDIR(info.st_mode) || good_assets(path, depth + 1));
-        if (!good) {
-            core_fail("mod: %s: assets hold no .lua files, links, or folders shaders and corsac",
-                      path);
-        }
-    }
-    if (entries) {
-        closedir(entries);
-    }
-    return good;
-}
-
-// The mod's assets hide the game's files of the same names.
-static bool mount_assets(script_mod *m) {
-    char assets[600];
-    struct stat info;
-    snprintf(assets, sizeof assets, "%s/assets", m->dir);
-    return stat(assets, &info) != 0 ||
-           (good_assets(assets, 0) && core_vfs_mount(scene_vfs(m->game->scene), assets, "", false));
-}
-
 bool script_add_mod(script *game, const char *dir) {
     if (game->mod_count == SCRIPT_MODS_MAX) {
         return core_fail("mod %s: at most %d mods", dir, SCRIPT_MODS_MAX);
@@ -560,7 +551,7 @@ bool script_add_mod(script *game, const char *dir) {
         good = strcmp(game->mods[i]->name, m->name) != 0 ||
                core_fail("mod %s: another mod is named \"%s\"", dir, m->name);
     }
-    good = good && mount_assets(m);
+    good = good && script_mod_check_assets(m);
     core_vfs_destroy(files);
     if (!good) {
         destroy_mod(m);
@@ -636,8 +627,8 @@ void script_mods_start(script *game) {
         m->index = i;
         m->rng = core_rng_make(game->seed, CORE_RNG_MOD + (uint64_t)i);
         m->view->seed = game->seed;
-        m->started =
-            core_vfs_mount(files, m->dir, "", false) && load_file(m, files, "main.lua", &call);
+        m->started = script_mod_mount_assets(m) && core_vfs_mount(files, m->dir, "", false) &&
+                     load_file(m, files, "main.lua", &call);
         if (m->started) {
             call_mod(m, &call, GUARD_START);
             luaL_unref(m->view->L, LUA_REGISTRYINDEX, call.function);

@@ -12,7 +12,9 @@ enum {
     MOD_LOG_LINES = 200,
     MOD_JOURNAL_MAX = 4096,
     MOD_ARGS_BYTES = 128,
-    MOD_TEXT_BYTES = 32 << 10
+    MOD_TEXT_BYTES = 32 << 10,
+    MOD_FSM_PARTS = 256, // states and transitions that a mod adds to machines
+    MOD_EXTENDED = 16    // machines that one call extends
 };
 
 // A change of the simulation that waits for the end of the mod's call.
@@ -22,6 +24,11 @@ typedef struct mod_change {
     core_handle self;
     _Alignas(16) unsigned char args[MOD_ARGS_BYTES];
 } mod_change;
+
+typedef struct mod_extended { // a machine as it was before the running call added to it
+    core_handle machine;
+    uint32_t states, transitions;
+} mod_extended;
 
 typedef struct mod_made { // an object that the running call made
     const bind_type *type;
@@ -50,7 +57,15 @@ typedef struct script_mod {
     mod_made *kept; // what all its calls made and may still live
     int kept_count, kept_capacity;
     uint32_t owned[32]; // entries of `kept` by class
+    mod_extended extended[MOD_EXTENDED];
+    int extended_count;
+    uint32_t fsm_parts;
 } script_mod;
+
+// mod_assets.c: files in assets/ hide the game's. What may not be there is refused (core_fail)
+// before anything is mounted; files of two mods are told when the later one is mounted.
+bool script_mod_check_assets(const script_mod *m);
+bool script_mod_mount_assets(script_mod *m);
 
 core_rng *script_mod_stream(script_mod *m);
 void script_mods_destroy(script *game);
@@ -73,6 +88,9 @@ bool script_mod_defer(script *s, lua_State *L, const bind_fn *fn, const bind_typ
                       core_handle self, const void *args, size_t size);
 // Notes what a function made (top of the stack).
 void script_mod_made(script *s, lua_State *L, const bind_fn *fn);
+// Before a mod adds to a machine of so many states and transitions: raises a Lua error over its
+// quota, else notes how the machine was, should the call fail.
+void script_mod_extends(script *s, lua_State *L, const mod_extended *before, uint32_t parts);
 // An error text of a mod that did not end its call (top of the stack, popped).
 void script_mod_report(script *s, lua_State *L);
 

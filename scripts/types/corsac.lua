@@ -334,6 +334,43 @@ function Clip:destroy() end
 ---@class corsac.Machine
 local Machine = {}
 
+---@class Machine.extend.options.states.blend
+---@field clip corsac.Clip
+---@field value number of the parameter at which it plays alone
+
+---@class Machine.extend.options.states
+---@field name string unique in the machine
+---@field clip? corsac.Clip what it plays
+---@field blend? Machine.extend.options.states.blend[] in place of clip: looping clips between which a parameter blends, values ascending
+---@field blendParameter? string a parameter of the machine
+---@field loop? "loop"|"once"|"pingpong" what happens at the clip's end
+---@field speed? number factor on time; negative: backwards
+---@field onEnter? function called with the animator
+---@field onExit? function called with the animator
+---@field onTick? function called each step with the animator and dt
+---@field getSpeed? function gives a factor on time; called with the animator and the phase from 0 to 1
+
+---@class Machine.extend.options.transitions
+---@field from? string state it leaves (nil: any other)
+---@field to string state it enters
+---@field condition? function called each step with the animator; true starts it
+---@field event? string starts when sent
+---@field parameter? string starts when it compares so with value
+---@field compare? ">"|"<"|">="|"<="|"=="|"~="
+---@field value? number
+---@field length? number of the cross-fade, s
+---@field fade? "linear"|"smooth" shape of the cross-fade
+---@field uninterruptible? boolean no other transition starts before its end
+---@field sync? boolean the target starts at the same phase
+
+---@class Machine.extend.options
+---@field states? Machine.extend.options.states[] as in corsac.anim.newMachine
+---@field transitions? Machine.extend.options.transitions[] tried after those it has
+
+---Adds states and transitions, for all animators that use the machine.
+---@param options Machine.extend.options what to add
+function Machine:extend(options) end
+
 ---The machine as Graphviz text.
 ---@return string text
 function Machine:getDot() end

@@ -2,6 +2,7 @@
 #include "anim/fixture.h"
 
 static fixture f;
+static anim_machine latest; // made by spawn
 static anim_clip slow, fast, hit;
 static char trace[1024];
 
@@ -43,6 +44,7 @@ static anim_state_desc state(const char *name, anim_clip clip, anim_loop loop) {
 static anim_instance spawn(const anim_machine_desc *d) {
     anim_machine m = anim_machine_create(f.world, d);
     TEST_ASSERT_FALSE_MESSAGE(core_handle_is_null(m), core_last_error());
+    latest = m;
     anim_instance_desc desc = anim_instance_desc_default();
     desc.skeleton = f.skeleton;
     desc.machine = m;
@@ -471,6 +473,40 @@ static void test_steps_do_not_allocate(void) {
     TEST_ASSERT_EQUAL_UINT64(before, core_alloc_count());
 }
 
+static void test_a_machine_in_use_is_extended_and_trimmed(void) {
+    static const anim_transition_desc none[] = {
+        {.from = "idle", .to = "run", .when = ANIM_WHEN_EVENT, .event = "go"}};
+    anim_instance who = spawn_three(none, 1);
+    anim_machine m = latest;
+    uint32_t states, transitions;
+    anim_state_desc dance = state("dance", fast, ANIM_LOOP);
+    anim_transition_desc to[] = {
+        {.from = "idle", .to = "dance", .when = ANIM_WHEN_EVENT, .event = "party"},
+        {.from = "dance", .to = "idle", .when = ANIM_WHEN_EVENT, .event = "go"}};
+    anim_machine_desc more = anim_machine_desc_default();
+    more.state = &dance;
+    more.state_count = 1;
+    more.transition = to;
+    more.transition_count = 2;
+    TEST_ASSERT_TRUE_MESSAGE(anim_machine_extend(f.world, m, &more), core_last_error());
+    TEST_ASSERT_FALSE(anim_machine_extend(f.world, m, &more)); // all or nothing
+    TEST_ASSERT_NOT_NULL(strstr(core_last_error(), "two states are called \"dance\""));
+    anim_machine_size(f.world, m, &states, &transitions);
+    TEST_ASSERT_EQUAL(4, states);
+    TEST_ASSERT_EQUAL(3, transitions);
+    TEST_ASSERT_TRUE(anim_instance_send(f.world, who, "party"));
+    anim_world_update(f.world, 0.1f);
+    TEST_ASSERT_EQUAL_STRING("dance", anim_instance_state(f.world, who));
+    TEST_ASSERT_FALSE(anim_machine_trim(f.world, m, 3, 1)); // it plays
+    TEST_ASSERT_TRUE(anim_instance_send(f.world, who, "go"));
+    anim_world_update(f.world, 0.1f);
+    anim_world_update(f.world, 0.1f);
+    TEST_ASSERT_FALSE(anim_machine_trim(f.world, m, 3, 2)); // a transition leads there
+    TEST_ASSERT_TRUE_MESSAGE(anim_machine_trim(f.world, m, 3, 1), core_last_error());
+    TEST_ASSERT_FALSE(anim_instance_send(f.world, who, "party"));
+    TEST_ASSERT_TRUE(anim_machine_extend(f.world, m, &more));
+}
+
 static void test_dot(void) {
     const anim_transition_desc t[] = {
         {.to = "hit", .when = ANIM_WHEN_EVENT, .event = "hit", .length = 0.25f},
@@ -514,6 +550,7 @@ int main(void) {
     RUN_TEST(test_names_are_checked);
     RUN_TEST(test_resources_in_use_stay);
     RUN_TEST(test_steps_do_not_allocate);
+    RUN_TEST(test_a_machine_in_use_is_extended_and_trimmed);
     RUN_TEST(test_dot);
     return UNITY_END();
 }

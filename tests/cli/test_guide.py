@@ -46,7 +46,7 @@ class GuideGame(SceneCase):
     def test_the_mod_changes_gravity_and_nothing_else_fails(self):
         plain = corsac("run", self.GAME, "--headless", "--steps", 60, "--hash")
         moon = corsac("run", self.GAME, "--headless", "--steps", 60, "--hash", "--keep-going",
-                      "--mod", self.GAME + "/mods/moon")
+                      "--mod", "scripts/mods/moon")
         self.assertRegex(moon.out.strip(), "^[0-9a-f]{16}$")
         self.assertNotEqual(plain.out, moon.out)
 

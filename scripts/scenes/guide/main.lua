@@ -1,5 +1,5 @@
 -- The guide's game: a hundred boxes fall, a fox walks to a plate, the plate opens a door. Three
--- lights, a sound, and a mod (mods/moon) that changes gravity: --mod scripts/scenes/guide/mods/moon
+-- lights, a sound, and a mod that changes gravity: --mod scripts/mods/moon
 local scene, phys, gfx, anim, nav, audio =
     corsac.scene, corsac.phys, corsac.gfx, corsac.anim, corsac.nav, corsac.audio
 
