@@ -22,6 +22,19 @@ static const char *param(void *ctx, const char *name) {
     return NULL;
 }
 
+static bool replays(void *ctx) { return ((app_run *)ctx)->replay != NULL; }
+
+static const char *saved(void *ctx, const char *name, size_t *size) {
+    return app_replay_saved(((app_run *)ctx)->replay, name, size);
+}
+
+static void note_saved(void *ctx, const char *name, const char *text, size_t size) {
+    app_run *r = ctx;
+    if (r->recorder) {
+        app_recorder_saved(r->recorder, name, text, size);
+    }
+}
+
 static void leave(void *ctx, int code) {
     app_run *r = ctx;
     r->quit = true;
@@ -135,6 +148,9 @@ script_host app_host(app_run *r) {
                          .bind = bind_action,
                          .binding = action_binding,
                          .cursor = set_cursor,
+                         .replays = replays,
+                         .saved = saved,
+                         .note_saved = note_saved,
                          .pause = set_pause,
                          .time_scale = set_time_scale};
 }

@@ -112,6 +112,14 @@ void app_recorder_step(app_recorder *r, const gfx_event *event, uint32_t count, 
     }
 }
 
+void app_recorder_saved(app_recorder *r, const char *name, const char *text, size_t size) {
+    put_u32(r, JOURNAL_READ);
+    put_text(r, name);
+    put_u32(r, text != NULL);
+    put_u32(r, (uint32_t)size);
+    put(r, text, size);
+}
+
 bool app_recorder_close(app_recorder *r, uint64_t hash) {
     put_u32(r, JOURNAL_DONE);
     put_u64(r, hash);

@@ -3,8 +3,8 @@
 // after every step the hash of each state column and a checksum of each row, so that a run that
 // goes another way is caught at its first step, object and column. It names no file to open.
 //
-// Layout, little-endian: "CRR1"; a header; then per step a block "STEP"; last a block "DONE". Texts
-// are a u32 length and bytes.
+// Layout, little-endian: "CRR1"; a header; then per step a block "STEP", before it a block "READ"
+// for each file of saved data that was read; last a block "DONE". Texts are a u32 length and bytes.
 #ifndef APP_JOURNAL_H
 #define APP_JOURNAL_H
 
@@ -41,6 +41,8 @@ typedef struct app_recorder app_recorder;
 app_recorder *app_recorder_open(const char *path, const app_journal_header *header);
 // After a step: the events it began with, then the state it ended in.
 void app_recorder_step(app_recorder *r, const gfx_event *event, uint32_t count, const scene *s);
+// Saved data that the script read (NULL: there was none): it is no part of the game's files.
+void app_recorder_saved(app_recorder *r, const char *name, const char *text, size_t size);
 // Writes the end and closes. False + core_fail when any write failed.
 bool app_recorder_close(app_recorder *r, uint64_t hash);
 
@@ -54,6 +56,9 @@ const app_journal_header *app_replay_header(const app_replay *r);
 uint64_t app_replay_steps(const app_replay *r);
 // Events of the next step (copied to out[APP_MAX_EVENTS]); returns how many.
 uint32_t app_replay_events(app_replay *r, gfx_event *out);
+// What the next read of saved data `name` gave when the run was recorded: text[size], NULL when
+// there was no such file. Reads beyond those recorded give the last again.
+const char *app_replay_saved(app_replay *r, const char *name, size_t *size);
 // Compares the state after the step whose events were read last, and moves on. False + core_fail
 // with first object and column on divergence.
 bool app_replay_check(app_replay *r, const scene *s);

@@ -14,6 +14,13 @@ typedef struct cursor {
     bool bad;
 } cursor;
 
+typedef struct saved_read {
+    char name[80];
+    const uint8_t *text; // NULL: there was no such file
+    uint32_t size;
+    bool used;
+} saved_read;
+
 struct app_replay {
     char path[512];
     uint8_t *data;
@@ -22,6 +29,8 @@ struct app_replay {
     uint64_t steps, done;
     uint16_t *row_hash; // [capacity]
     uint32_t capacity;
+    saved_read *read;
+    uint32_t read_count, read_capacity;
 };
 
 static const void *take(cursor *c, size_t size) {
@@ -126,34 +135,58 @@ static bool event_ok(const gfx_event *e) {
     return (unsigned)e->type <= GFX_EVENT_PAD_AXIS && isfinite(e->x) && isfinite(e->y);
 }
 
-// Steps in the file; every block is walked once.
-static uint64_t walk(cursor *c) {
-    uint64_t steps = 0;
-    for (;;) {
+static void walk_step(cursor *c) {
+    uint32_t events = take_count(c, APP_MAX_EVENTS);
+    for (uint32_t i = 0; i < events && !c->bad; i++) {
+        gfx_event e;
+        const void *p = take(c, sizeof e);
+        if (p) {
+            memcpy(&e, p, sizeof e);
+            c->bad |= !event_ok(&e);
+        }
+    }
+    uint32_t sets = take_count(c, JOURNAL_MAX_SETS);
+    for (uint32_t i = 0; i < sets && !c->bad; i++) {
+        take_set(c);
+    }
+}
+
+static saved_read take_read(cursor *c) {
+    saved_read read = {0};
+    take_text(c, read.name, sizeof read.name);
+    bool there = take_count(c, 1) != 0;
+    read.size = take_count(c, JOURNAL_SAVE_MAX);
+    const uint8_t *text = take(c, read.size);
+    read.text = there ? text : NULL;
+    return read;
+}
+
+static void keep_read(app_replay *r, const saved_read *read) {
+    if (r->read_count == r->read_capacity) {
+        uint32_t grown = CORE_MAX(16u, r->read_capacity * 2);
+        r->read = core_realloc(r->read, r->read_capacity * sizeof *read, grown * sizeof *read);
+        r->read_capacity = grown;
+    }
+    r->read[r->read_count++] = *read;
+}
+
+// Counts the steps and lists the reads; every block is walked once.
+static void walk(app_replay *r, cursor *c) {
+    while (!c->bad) {
         uint32_t mark = take_u32(c);
         if (mark == JOURNAL_DONE) {
             take_u64(c);
             c->bad |= c->at != c->size;
-            return steps;
+            return;
+        }
+        if (mark == JOURNAL_READ) {
+            saved_read read = take_read(c);
+            keep_read(r, &read);
+            continue;
         }
         c->bad |= mark != JOURNAL_STEP;
-        uint32_t events = take_count(c, APP_MAX_EVENTS);
-        for (uint32_t i = 0; i < events && !c->bad; i++) {
-            gfx_event e;
-            const void *p = take(c, sizeof e);
-            if (p) {
-                memcpy(&e, p, sizeof e);
-                c->bad |= !event_ok(&e);
-            }
-        }
-        uint32_t sets = take_count(c, JOURNAL_MAX_SETS);
-        for (uint32_t i = 0; i < sets && !c->bad; i++) {
-            take_set(c);
-        }
-        if (c->bad) {
-            return steps;
-        }
-        steps++;
+        walk_step(c);
+        r->steps += !c->bad;
     }
 }
 
@@ -175,7 +208,7 @@ app_replay *app_replay_open(const char *path) {
     take_header(&c, &r->header);
     r->next = c;
     if (!c.bad) {
-        r->steps = walk(&c);
+        walk(r, &c);
     }
     if (c.bad) {
         core_fail("recording '%s' is cut or damaged at byte %zu of %zu, after %llu whole steps; "
@@ -191,8 +224,22 @@ void app_replay_close(app_replay *r) {
     if (r) {
         core_free(r->data);
         core_free(r->row_hash);
+        core_free(r->read);
         core_free(r);
     }
+}
+
+const char *app_replay_saved(app_replay *r, const char *name, size_t *size) {
+    saved_read *found = NULL;
+    for (uint32_t i = 0; i < r->read_count && !(found && !found->used); i++) {
+        found = strcmp(r->read[i].name, name) == 0 ? &r->read[i] : found;
+    }
+    if (!found) {
+        return NULL;
+    }
+    found->used = true;
+    *size = found->size;
+    return (const char *)found->text;
 }
 
 const app_journal_header *app_replay_header(const app_replay *r) { return &r->header; }
@@ -202,7 +249,9 @@ uint32_t app_replay_events(app_replay *r, gfx_event *out) {
     if (r->done >= r->steps) {
         return 0;
     }
-    take_u32(&r->next);
+    while (take_u32(&r->next) == JOURNAL_READ) {
+        take_read(&r->next);
+    }
     uint32_t count = take_count(&r->next, APP_MAX_EVENTS);
     const void *p = take(&r->next, count * sizeof *out);
     if (p) {

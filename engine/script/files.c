@@ -77,8 +77,11 @@ int script_save_write(lua_State *L) {
     script *s = lua_touserdata(L, lua_upvalueindex(1));
     push_file_name(L, luaL_checkstring(L, 1));
     char *text = script_json_write(L, 2, "corsac.save.write: data");
-    core_vfs *files = player_files(s);
-    bool good = files && core_vfs_write(files, lua_tostring(L, -1), text, strlen(text));
+    bool good = s->host.replays && s->host.replays(s->host.ctx);
+    if (!good) {
+        core_vfs *files = player_files(s);
+        good = files && core_vfs_write(files, lua_tostring(L, -1), text, strlen(text));
+    }
     core_free(text);
     if (!good) {
         bind_fail(L);
@@ -86,24 +89,42 @@ int script_save_write(lua_State *L) {
     return 0;
 }
 
-int script_save_read(lua_State *L) {
-    script *s = lua_touserdata(L, lua_upvalueindex(1));
-    push_file_name(L, luaL_checkstring(L, 1));
+// The file's text; NULL when there is none. Raises an error when it cannot be read.
+static char *read_player_file(script *s, lua_State *L, const char *name, size_t *size) {
     core_vfs *files = player_files(s);
     if (!files) {
         bind_fail(L);
     }
-    const char *name = lua_tostring(L, -1);
     if (!core_vfs_exists(files, name)) {
+        return NULL;
+    }
+    char *text = core_vfs_read(files, name, size);
+    bool large = text && *size > SAVE_BYTES_MAX;
+    if (!text || large) {
+        core_free(text);
+        bind_error(L, "corsac.save.read: %s: %s", name,
+                   large ? "larger than 16 MiB" : core_last_error());
+    }
+    return text;
+}
+
+int script_save_read(lua_State *L) {
+    script *s = lua_touserdata(L, lua_upvalueindex(1));
+    const script_host *host = &s->host;
+    push_file_name(L, luaL_checkstring(L, 1));
+    const char *name = lua_tostring(L, -1);
+    size_t size = 0;
+    bool replay = host->replays && host->replays(host->ctx);
+    char *mine = replay ? NULL : read_player_file(s, L, name, &size);
+    const char *text = replay ? host->saved(host->ctx, name, &size) : mine;
+    if (!replay && host->note_saved) {
+        host->note_saved(host->ctx, name, text, size);
+    }
+    if (!text) {
         return 0;
     }
-    size_t size = 0;
-    char *text = core_vfs_read(files, name, &size);
-    bool good = text &&
-                (size <= SAVE_BYTES_MAX ||
-                 core_fail_quiet("%s: larger than %d MiB", name, SAVE_BYTES_MAX >> 20)) &&
-                script_json_read(L, text, size);
-    core_free(text);
+    bool good = script_json_read(L, text, size);
+    core_free(mine);
     if (!good) {
         bind_error(L, "corsac.save.read: %s: %s", name, core_last_error());
     }

@@ -29,6 +29,11 @@ typedef struct script_host {
     bool (*bind)(void *ctx, const char *action, const char *keys); // false + core_fail_quiet
     bool (*binding)(void *ctx, const char *action, char *keys, size_t size);
     void (*cursor)(void *ctx, int mode); // 0 normal, 1 hidden, 2 locked
+    // Saved data is the player's, no part of the game: a recording notes what was read (NULL: there
+    // was none), a replay gives it back and writes none.
+    bool (*replays)(void *ctx);
+    const char *(*saved)(void *ctx, const char *name, size_t *size); // NULL: there was none
+    void (*note_saved)(void *ctx, const char *name, const char *text, size_t size);
     void (*pause)(void *ctx, bool paused);
     void (*time_scale)(void *ctx, float scale);
 } script_host;

@@ -44,6 +44,39 @@ class Replay(SceneCase):
         # The first 20 steps of a recording are a run too.
         self.assert_exit(self.replay(text, "--steps", 20), 0)
 
+    def test_saved_data_is_part_of_the_recording(self):
+        text = """
+            local step, early = 0, corsac.save.read("slot")
+            function corsac.load()
+              assert(early.height == 3)
+              local saved = corsac.save.read("slot") or { height = 1 }
+              ball = corsac.phys.newBody{ shape = "sphere", position = { 0, saved.height, 0 } }
+              assert(corsac.save.read("none") == nil)
+            end
+            function corsac.fixed()
+              step = step + 1
+              if step == 5 then
+                corsac.save.write("slot", { height = 7 })
+                ball:setPosition(0, 7, 0)
+              end
+            end"""
+        player = {"CORSAC_SAVE": str(self.dir / "player")}
+        self.write("player/slot.json", '{"version": 1, "data": {"height": 3}}')
+        done = self.run_scene(text, "--steps", 10, "--record", self.file, "--hash", "--quiet", env=player)
+        self.assert_exit(done, 0)
+        self.assertIn("7", (self.dir / "player/slot.json").read_text())
+        # The player has gone on since: the replay sees what the run saw, and leaves the files alone.
+        self.write("player/slot.json", '{"version": 1, "data": {"height": 11}}')
+        again = self.replay(text, env=player)
+        self.assert_exit(again, 0)
+        self.assertEqual(again.out, done.out)
+        self.assertIn("11", (self.dir / "player/slot.json").read_text())
+        data = self.file.read_bytes()
+        at = data.index(b"READ")
+        for offset in (4, 8, 12, 18, 22, 26):
+            self.file.write_bytes(data[:at + offset] + b"\xff\xff\xff\x7f" + data[at + offset + 4:])
+            self.assertIn(self.replay(text, env=player).code, (1, 2, 4), offset)
+
     def test_in_a_window(self):
         was = self.record(BALLS, "--steps", 30)
         done = self.replay(BALLS, "--size", "64x64", window=True)
