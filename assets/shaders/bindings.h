@@ -151,9 +151,11 @@ struct gfx_material_block {
 };
 
 struct gfx_quad_block {
-    GFX_VEC4(rect);  // x, y, width, height in pixels, origin top left
+    GFX_VEC4(place); // xy: first corner in pixels, origin top left; radius of the corners; border
+    GFX_VEC4(axes);  // its two edges, pixels
     GFX_VEC4(uv);    // u0, v0, u1, v1
     GFX_VEC4(color); // sRGB-encoded, straight alpha
+    GFX_VEC4(clip);  // left, top, right, bottom, pixels
 };
 
 #endif

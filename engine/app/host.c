@@ -113,6 +113,11 @@ static bool action_binding(void *ctx, const char *action, char *keys, size_t siz
     return app_input_binding(&((app_run *)ctx)->input, action, keys, size);
 }
 
+static void frame_size(void *ctx, uint32_t *width, uint32_t *height) {
+    const app_run *r = ctx;
+    *width = r->width, *height = r->height;
+}
+
 static void set_cursor(void *ctx, int mode) {
     app_run *r = ctx;
     if (r->device) {
@@ -147,6 +152,7 @@ script_host app_host(app_run *r) {
                          .send_move = send_move,
                          .bind = bind_action,
                          .binding = action_binding,
+                         .size = frame_size,
                          .cursor = set_cursor,
                          .replays = replays,
                          .saved = saved,

@@ -185,6 +185,16 @@ void app_input_queue(app_input *in, const gfx_event *event) {
     }
 }
 
+// Where the pointer will be once the queue is heard.
+static void pointer(const app_input *in, float *x, float *y) {
+    *x = in->mouse_x, *y = in->mouse_y;
+    for (uint32_t i = 0; i < in->queued; i++) {
+        if (in->queue[i].type == GFX_EVENT_MOUSE_MOVE) {
+            *x = in->queue[i].x, *y = in->queue[i].y;
+        }
+    }
+}
+
 bool app_input_send_key(app_input *in, const char *name, bool pressed) {
     int code = app_key_code(name);
     if (code < 0 || code >= APP_AXIS_CODE) {
@@ -197,8 +207,7 @@ bool app_input_send_key(app_input *in, const char *name, bool pressed) {
     } else if (code >= APP_MOUSE_CODE) {
         e.type = GFX_EVENT_MOUSE_BUTTON;
         e.code -= APP_MOUSE_CODE;
-        e.x = in->mouse_x;
-        e.y = in->mouse_y;
+        pointer(in, &e.x, &e.y);
     }
     app_input_queue(in, &e);
     return true;

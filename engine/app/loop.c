@@ -32,6 +32,7 @@ static void send_event(app_run *r, const gfx_event *e) {
         script_event(r->script, "text", text, NULL, 0);
         break;
     case GFX_EVENT_RESIZE:
+        r->width = (uint32_t)CORE_MAX(e->x, 1.0f), r->height = (uint32_t)CORE_MAX(e->y, 1.0f);
         script_event(r->script, "resize", NULL, at, 2);
         break;
     case GFX_EVENT_FOCUS:

@@ -19,6 +19,7 @@ typedef core_handle gfx_material;
 typedef struct gfx_world_desc {
     core_jobs *jobs;
     core_metrics *metrics;
+    core_vfs *vfs;                      // fonts; borrowed, may be NULL
     uint32_t max_instances, max_lights; // default 1 << 20, 1 << 17
     uint32_t cookie;
 } gfx_world_desc;
@@ -151,14 +152,60 @@ typedef struct gfx_camera {
 } gfx_camera;
 void gfx_world_set_camera(gfx_world *world, const gfx_camera *camera);
 gfx_camera gfx_world_camera(const gfx_world *world);
+// The ray through a pixel of a picture (origin top left) of a camera: where it starts, unit
+// direction.
+void gfx_camera_ray(const gfx_camera *camera, float width, float height, float x, float y,
+                    core_vec3 *origin, core_vec3 *direction);
+// Where a point is in the picture: pixels, and its distance along the view (m, negative behind).
+core_vec3 gfx_camera_project(const gfx_camera *camera, float width, float height, core_vec3 point);
 
-// Screen-space 2D, drawn over the next frame in call order; pixels, origin top left. Colours are
-// sRGB-encoded with straight alpha. Text is UTF-8, y its top, size the line height; '\n' starts a
-// line.
+// ---- 2D: drawn over the next frame in call order ----
+// Pixels, origin top left. Colours are sRGB-encoded with straight alpha. Text is UTF-8, y its top,
+// size the height of a line; '\n' starts a line.
 void gfx_print(gfx_world *world, float x, float y, float size, const float color[4],
                const char *text);
 void gfx_rect(gfx_world *world, float x, float y, float w, float h, const float color[4]);
 void gfx_image(gfx_world *world, const char *path, float x, float y, float w, float h);
+// With smooth edges. radius: of the corners; border > 0: a frame that wide, on the inside.
+void gfx_round_rect(gfx_world *world, float x, float y, float w, float h, float radius,
+                    float border, const float color[4]);
+void gfx_line(gfx_world *world, float x0, float y0, float x1, float y1, float width,
+              const float color[4]);
+typedef struct gfx_sprite_desc {
+    const char *path; // of an image file
+    float x, y;       // where the pivot lies
+    float w, h;       // 0: of the source
+    float source[4];  // x, y, width, height in the image, texels; width 0: all of it
+    float pivot[2];   // of the sprite's width and height
+    float angle;      // radians, clockwise about the pivot
+    float color[4];   // multiplies the image; zero: white
+    uint32_t cookie;
+} gfx_sprite_desc;
+gfx_sprite_desc gfx_sprite_desc_default(void);
+bool gfx_sprite(gfx_world *world, const gfx_sprite_desc *desc);
+// What follows is drawn only inside the rectangle, and inside those pushed before: at most
+// GFX_CLIPS deep. False + core_fail beyond, and for a pop without its push.
+#define GFX_CLIPS 16
+bool gfx_clip_push(gfx_world *world, float x, float y, float w, float h);
+bool gfx_clip_pop(gfx_world *world);
+typedef struct gfx_text_desc {
+    const char *text;
+    const char *font; // "mono" (default; "fonts/default.ttf" of the game where it has one), "sans",
+                      // or the virtual path of a TrueType file
+    float x, y, size; // size: default 18, 4..256
+    float width;      // lines break at spaces to stay within; 0: at '\n' alone
+    float align;      // of lines in the width, or about x without one: 0 left, 0.5 middle, 1 right
+    float color[4];
+    uint32_t cookie;
+} gfx_text_desc;
+gfx_text_desc gfx_text_desc_default(void);
+bool gfx_text(gfx_world *world, const gfx_text_desc *desc);
+typedef struct gfx_text_box {
+    float width, height; // pixels
+    uint32_t lines;
+} gfx_text_box;
+// What a text will take; needs no device.
+bool gfx_text_measure(gfx_world *world, const gfx_text_desc *desc, gfx_text_box *out);
 // Stage times of the last step as bars and the counts of the last frame as text, top left: an
 // overlay for people. metrics may be NULL (frame counts only).
 void gfx_overlay(gfx_world *world, const core_metrics *metrics);
@@ -171,7 +218,7 @@ typedef struct gfx_device_desc {
     uint32_t width, height;
     const char *title;
     bool vsync;
-    core_vfs *vfs; // shaders are read from "shaders/", a font from "fonts/default.ttf"; borrowed
+    core_vfs *vfs; // shaders are read from "shaders/", images from anywhere; borrowed
     core_metrics *metrics;
     bool float_target; // RGBA32F HDR target (tests)
     uint32_t cookie;

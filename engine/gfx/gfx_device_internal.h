@@ -177,14 +177,15 @@ bool gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *vie
 
 // ---- screen-space quads (gfx_quads.c, gfx_font.c) ----
 
-typedef struct gfx_font gfx_font;
-gfx_font *gfx_font_create(core_vfs *vfs); // NULL: no font found, a warning is logged
+typedef struct gfx_font gfx_font; // an atlas of glyphs, of any face and size
+struct gfx_face;
+gfx_font *gfx_font_create(void);
 void gfx_font_release(gfx_font *font);
 GLuint gfx_font_texture(const gfx_font *font);
 void gfx_font_begin_frame(gfx_font *font);
 // Appends the quads (struct gfx_quad_block) of a text.
-void gfx_font_layout(gfx_font *font, const char *text, size_t length, float x, float y, float size,
-                     const gfx_rgba *color, gfx_growing *quads);
+void gfx_font_quads(gfx_font *font, const struct gfx_face *face, const char *text,
+                    const gfx_command *command, gfx_growing *quads);
 
 typedef struct gfx_quad_run { // quads that share a texture
     uint32_t first, count;
@@ -194,10 +195,9 @@ typedef struct gfx_quad_run { // quads that share a texture
 typedef struct gfx_quads {
     gfx_stream stream;
     gfx_growing quads, runs;
-    gfx_font *font;
-    bool font_tried;
+    gfx_font *font; // NULL until the first text
 } gfx_quads;
-bool gfx_quads_draw(gfx_device *device, const gfx_world *world);
+bool gfx_quads_draw(gfx_device *device, gfx_world *world);
 void gfx_quads_release(gfx_quads *quads);
 
 // ---- targets of a view (gfx_targets.c) ----

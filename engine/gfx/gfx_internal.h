@@ -86,10 +86,17 @@ CORE_COLUMNS_DECLARE(gfx_materials, GFX_MATERIAL_COLUMNS)
 typedef enum gfx_command_type { GFX_CMD_RECT, GFX_CMD_TEXT, GFX_CMD_IMAGE } gfx_command_type;
 typedef struct gfx_command { // one 2D call; text lies in the world's frame text
     gfx_command_type type;
-    float x, y, w, h; // text: h is the size in pixels
+    float x, y, w, h; // text: size and width of its lines in h and w
+    float pivot[2], angle, source[4];
+    float radius, border;
+    bool smooth; // edges
     gfx_rgba color;
+    float align;
+    float clip[4]; // left, top, right, bottom
     uint32_t text, text_length;
+    uint32_t font; // place of the font's name in the frame text, GFX_NO_TEXT: default
 } gfx_command;
+#define GFX_NO_TEXT UINT32_MAX
 
 typedef struct gfx_growing { // array that keeps its memory between frames
     void *data;
@@ -143,6 +150,10 @@ struct gfx_world {
     gfx_environment environment; // panorama: points to panorama_path
     char panorama_path[CORE_NAME_MAX];
     gfx_growing commands, text;
+    gfx_growing faces; // gfx_face
+    float clip[GFX_CLIPS + 1][4];
+    uint32_t clips;
+    core_vfs *vfs;
     size_t heap_bytes; // of meshes and palettes
     gfx_stats stats;
 };
@@ -160,6 +171,12 @@ bool gfx_fail_name(const char *what, const char *name, const char *const *names,
 
 // ---- meshes (gfx_mesh.c) ----
 void gfx_mesh_store_release(gfx_mesh_store *store);
+
+// ---- text (gfx_text.c) ----
+void gfx_faces_release(gfx_growing *faces);
+static inline float gfx_text_size(float size) {
+    return (float)(int)(CORE_CLAMP(size, 4.0f, 256.0f) + 0.5f);
+}
 
 // ---- view (gfx_view.c) ----
 #define GFX_PLANES 6

@@ -1,5 +1,6 @@
 // Draws a world's screen-space calls: text, rectangles, images, in call order.
 #include "gfx/gfx_device_internal.h"
+#include "gfx/gfx_text.h"
 
 #include <string.h>
 
@@ -23,39 +24,70 @@ static void extend_run(gfx_quads *q, GLuint texture, uint32_t features, size_t b
     }
 }
 
-static void add_rect(gfx_quads *q, const gfx_command *c, float w, float h) {
+// The rectangle of a command, turned about its pivot; w and h where it names none.
+static void add_rect(gfx_quads *q, const gfx_command *c, float w, float h, const float uv[4]) {
     struct gfx_quad_block *b = gfx_grow(&q->quads, sizeof *b, 1);
-    *b = (struct gfx_quad_block){.rect = {c->x, c->y, w, h}, .uv = {0.0f, 0.0f, 1.0f, 1.0f}};
+    float sine = 0.0f, cosine = 1.0f, px = c->pivot[0] * w, py = c->pivot[1] * h;
+    if (c->angle != 0.0f) {
+        core_sincosf(c->angle, &sine, &cosine);
+    }
+    *b = (struct gfx_quad_block){
+        .place = {c->x - px * cosine + py * sine, c->y - px * sine - py * cosine, c->radius,
+                  c->border},
+        .axes = {w * cosine, w * sine, -h * sine, h * cosine},
+    };
+    memcpy(b->uv, uv, sizeof b->uv);
     memcpy(b->color, &c->color, sizeof b->color);
+    memcpy(b->clip, c->clip, sizeof b->clip);
 }
 
-static void add_command(gfx_device *d, const gfx_world *world, const gfx_command *c) {
+static void add_image(gfx_quads *q, const gfx_command *c, const gfx_texture *t) {
+    const float w = (float)t->width, h = (float)t->height, *s = c->source;
+    float uv[4] = {0.0f, 0.0f, 1.0f, 1.0f}, size[2] = {w, h};
+    if (s[2] > 0.0f) {
+        uv[0] = s[0] / w, uv[1] = s[1] / h;
+        uv[2] = (s[0] + s[2]) / w, uv[3] = (s[1] + s[3]) / h;
+        size[0] = s[2], size[1] = s[3];
+    }
+    add_rect(q, c, c->w > 0.0f ? c->w : size[0], c->h > 0.0f ? c->h : size[1], uv);
+}
+
+static void add_text(gfx_device *d, gfx_world *world, const gfx_command *c) {
+    gfx_quads *q = &d->quads;
+    const char *text = world->text.data;
+    const gfx_face *face = gfx_face_get(world, c->font == GFX_NO_TEXT ? NULL : text + c->font);
+    if (face) {
+        q->font = q->font ? q->font : gfx_font_create();
+        gfx_font_quads(q->font, face, text + c->text, c, &q->quads);
+    }
+}
+
+static void add_command(gfx_device *d, gfx_world *world, const gfx_command *c) {
+    const float whole[4] = {0.0f, 0.0f, 1.0f, 1.0f};
     gfx_quads *q = &d->quads;
     size_t before = q->quads.count;
-    const char *text = (const char *)world->text.data + c->text;
     if (c->type == GFX_CMD_RECT) {
-        add_rect(q, c, c->w, c->h);
-        extend_run(q, 0, 0, before);
+        add_rect(q, c, c->w, c->h, whole);
+        extend_run(q, 0, c->smooth ? GFX_FEATURE_SMOOTH : 0, before);
     } else if (c->type == GFX_CMD_TEXT) {
-        if (!q->font_tried) {
-            q->font = gfx_font_create(d->vfs);
-            q->font_tried = true;
-        }
-        if (q->font) {
-            gfx_font_layout(q->font, text, c->text_length, c->x, c->y, c->h, &c->color, &q->quads);
-            extend_run(q, gfx_font_texture(q->font), GFX_FEATURE_TEXT, before);
-        }
+        add_text(d, world, c);
+        extend_run(q, q->font ? gfx_font_texture(q->font) : 0, GFX_FEATURE_TEXT, before);
     } else {
-        const gfx_texture *t = gfx_texture_get(d, text, false);
+        const gfx_texture *t = gfx_texture_get(d, (const char *)world->text.data + c->text, false);
         if (t) {
-            add_rect(q, c, c->w > 0.0f ? c->w : (float)t->width,
-                     c->h > 0.0f ? c->h : (float)t->height);
+            add_image(q, c, t);
             extend_run(q, t->name, GFX_FEATURE_IMAGE, before);
         }
     }
 }
 
-bool gfx_quads_draw(gfx_device *d, const gfx_world *world) {
+static void set_clipping(bool on) {
+    for (GLenum i = 0; i < 4; ++i) {
+        (on ? glEnable : glDisable)(GL_CLIP_DISTANCE0 + i);
+    }
+}
+
+bool gfx_quads_draw(gfx_device *d, gfx_world *world) {
     gfx_quads *q = &d->quads;
     if (world->commands.count == 0) {
         return true;
@@ -77,6 +109,7 @@ bool gfx_quads_draw(gfx_device *d, const gfx_world *world) {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glBindVertexArray(d->empty_vao);
+    set_clipping(true);
     bool ok = true;
     for (size_t i = 0; i < q->runs.count && ok; ++i) {
         const gfx_quad_run *run = (const gfx_quad_run *)q->runs.data + i;
@@ -88,6 +121,7 @@ bool gfx_quads_draw(gfx_device *d, const gfx_world *world) {
             glDrawArrays(GL_TRIANGLES, (GLint)run->first * 6, (GLsizei)run->count * 6);
         }
     }
+    set_clipping(false);
     glDisable(GL_BLEND);
     return ok;
 }

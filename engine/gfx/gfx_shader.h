@@ -29,7 +29,8 @@
     X(FOG, "USE_FOG")                                                                              \
     X(BLOOM, "USE_BLOOM")                                                                          \
     X(AUTO_EXPOSURE, "USE_AUTO_EXPOSURE")                                                          \
-    X(GRADE, "USE_GRADE")
+    X(GRADE, "USE_GRADE")                                                                          \
+    X(SMOOTH, "USE_SMOOTH")
 
 #define GFX_FEATURE_INDEX_(id, name) GFX_FEATURE_INDEX_##id,
 #define GFX_FEATURE_BIT_(id, name)   GFX_FEATURE_##id = 1u << GFX_FEATURE_INDEX_##id,

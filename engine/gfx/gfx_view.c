@@ -96,3 +96,30 @@ gfx_camera gfx_world_camera_or_default(const gfx_world *world) {
     c.virtual_far = or_default(c.virtual_far, 100.0f);
     return c;
 }
+
+void gfx_camera_ray(const gfx_camera *camera, float width, float height, float x, float y,
+                    core_vec3 *origin, core_vec3 *direction) {
+    gfx_view v;
+    gfx_view_make(camera, width / height, &v);
+    core_quat turn = core_quat_normalize(camera->rotation);
+    float right = (2.0f * x / width - 1.0f) * v.tan_x, up = (1.0f - 2.0f * y / height) * v.tan_y;
+    if (v.orthographic) {
+        core_vec3 aside = core_quat_rotate(turn, core_v3(right, up, 0.0f));
+        *origin = core_v3_add(v.position, aside);
+        *direction = core_quat_rotate(turn, core_v3(0.0f, 0.0f, -1.0f));
+        return;
+    }
+    *origin = v.position;
+    core_vec3 ahead = core_quat_rotate(turn, core_v3(right, up, -1.0f));
+    *direction = core_v3_normalize(ahead, core_v3(0.0f, 0.0f, -1.0f));
+}
+
+core_vec3 gfx_camera_project(const gfx_camera *camera, float width, float height, core_vec3 point) {
+    gfx_view v;
+    gfx_view_make(camera, width / height, &v);
+    core_quat inverse = core_quat_conjugate(core_quat_normalize(camera->rotation));
+    core_vec3 p = core_quat_rotate(inverse, core_v3_sub(point, camera->position));
+    float depth = -p.z, at = v.orthographic ? 1.0f : CORE_MAX(depth, 1e-6f);
+    return core_v3(0.5f * width * (1.0f + p.x / (at * v.tan_x)),
+                   0.5f * height * (1.0f - p.y / (at * v.tan_y)), depth);
+}

@@ -33,6 +33,8 @@ gfx_world *gfx_world_create(const gfx_world_desc *desc) {
     w->jobs = desc->jobs;
     w->metrics = desc->metrics;
     gfx_settings_default(&w->settings);
+    w->vfs = desc->vfs;
+    gfx_world_begin_frame(w);
     const float ambient[3] = {0.32f, 0.36f, 0.42f}, background[3] = {0.11f, 0.14f, 0.18f};
     memcpy(w->ambient, ambient, sizeof ambient);
     memcpy(w->background, background, sizeof background);
@@ -64,6 +66,7 @@ void gfx_world_destroy(gfx_world *world) {
     core_columns_release(&world->materials.set);
     gfx_growing_release(&world->commands);
     gfx_growing_release(&world->text);
+    gfx_faces_release(&world->faces);
     core_free(world);
 }
 

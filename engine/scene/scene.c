@@ -125,6 +125,7 @@ gfx_world *scene_gfx(scene *s) {
         gfx_world_desc desc = gfx_world_desc_default();
         desc.jobs = s->jobs;
         desc.metrics = s->metrics;
+        desc.vfs = s->vfs;
         s->gfx = gfx_world_create(&desc);
         scene_settings_apply(s, "gfx", s->gfx);
     }

@@ -34,6 +34,7 @@ typedef struct script_host {
     bool (*replays)(void *ctx);
     const char *(*saved)(void *ctx, const char *name, size_t *size); // NULL: there was none
     void (*note_saved)(void *ctx, const char *name, const char *text, size_t size);
+    void (*size)(void *ctx, uint32_t *width, uint32_t *height); // of the frame, pixels
     void (*pause)(void *ctx, bool paused);
     void (*time_scale)(void *ctx, float scale);
 } script_host;

@@ -336,7 +336,7 @@ lua_State *script_state_create(script *s) {
     lua_setfield(L, LUA_REGISTRYINDEX, "corsac.engine");
     static const char *const parts[] = {"base",   "native",     "columns", "tasks",
                                         "events", "containers", "prefab",  "save",
-                                        "mods",   "reload",     "inspect"};
+                                        "mods",   "reload",     "inspect", "ui"};
     bool good = true;
     for (size_t i = 0; good && i < CORE_COUNT_OF(parts); i++) {
         good = script_run_part(s, L, parts[i]);

@@ -1602,6 +1602,118 @@ function corsac.gfx.rect(x, y, w, h, color) end
 ---@param h number height
 function corsac.gfx.image(path, x, y, w, h) end
 
+---Shapes, sprites and text over the frame; places on the screen.
+corsac.gfx = {}
+
+---Fills a rectangle with smooth, rounded corners over the frame, or frames it.
+---@param x number left
+---@param y number top
+---@param w number width
+---@param h number height
+---@param radius number of the corners
+---@param color? number[] sRGB
+---@param border? number width of a frame on the inside; 0: filled
+function corsac.gfx.roundRect(x, y, w, h, radius, color, border) end
+
+---Draws a line over the frame.
+---@param x0 number start
+---@param y0 number start
+---@param x1 number end
+---@param y1 number end
+---@param width? number
+---@param color? number[] sRGB
+function corsac.gfx.line(x0, y0, x1, y1, width, color) end
+
+---@class corsac.gfx.sprite.options
+---@field x? number where the pivot lies, pixels
+---@field y? number where the pivot lies, pixels
+---@field w? number width, pixels
+---@field h? number height, pixels
+---@field source? number[] {x, y, width, height} of the part of the image, texels
+---@field pivotX? number share of the width
+---@field pivotY? number share of the height
+---@field angle? number clockwise about the pivot, rad
+---@field color? number[] sRGB
+
+---Draws an image file, or a part of it, turned and tinted, over the frame.
+---@param path string in the game's folder
+---@param options? corsac.gfx.sprite.options where and how
+function corsac.gfx.sprite(path, options) end
+
+---@class corsac.gfx.text.options
+---@field x? number left, pixels
+---@field y? number top, pixels
+---@field size? number height of a line, pixels
+---@field width? number lines break to stay within, pixels
+---@field align? number of lines in the width, or about x without one: 0 left, 0.5 middle, 1 right
+---@field font? string "mono", "sans", or a TrueType file of the game
+---@field color? number[] sRGB
+
+---Writes text over the frame, with a font, lines that break, and alignment.
+---@param text string UTF-8
+---@param options? corsac.gfx.text.options where and how
+function corsac.gfx.text(text, options) end
+
+---@class corsac.gfx.measure.options
+---@field x? number left, pixels
+---@field y? number top, pixels
+---@field size? number height of a line, pixels
+---@field width? number lines break to stay within, pixels
+---@field align? number of lines in the width, or about x without one: 0 left, 0.5 middle, 1 right
+---@field font? string "mono", "sans", or a TrueType file of the game
+---@field color? number[] sRGB
+
+---What a text will take: width and height in pixels, and lines.
+---@param text string UTF-8
+---@param options? corsac.gfx.measure.options where and how
+---@return number width
+---@return number height
+---@return integer lines
+function corsac.gfx.measure(text, options) end
+
+---What follows is drawn only inside a rectangle, and inside those pushed before.
+---@param x number left
+---@param y number top
+---@param w number width
+---@param h number height
+function corsac.gfx.pushClip(x, y, w, h) end
+
+---Ends what the last pushClip began.
+function corsac.gfx.popClip() end
+
+---Size of the frame.
+---@return number width
+---@return number height
+function corsac.gfx.getSize() end
+
+---The ray through a point of the frame: its origin and unit direction.
+---@param x number from the left
+---@param y number from the top
+---@return number x
+---@return number y
+---@return number z
+---@return number dx
+---@return number dy
+---@return number dz
+function corsac.gfx.getRay(x, y) end
+
+---Where a point of the world is in the frame, and how far ahead of the camera.
+---@param x number
+---@param y number
+---@param z number
+---@return number x
+---@return number y
+---@return number depth
+function corsac.gfx.project(x, y, z) end
+
+---Menus of buttons, sliders, lists and text fields.
+corsac.ui = {}
+
+---Makes a menu: a column of widgets with focus by pointer, keys and gamepad. Give it events with panel:event(...) and draw it with panel:draw(); panel:get(name), panel:set(name, value), panel:focus(name), panel:show(on), panel:isShown().
+---@param options table x, y, width, height, title, theme, shown, and widgets as list items: {type = "label|button|toggle|slider|list|field|gap", name, text, value, ...}
+---@return corsac.Panel panel
+function corsac.ui.newPanel(options) end
+
 ---Skeletons, clips and state machines.
 corsac.anim = {}
 
