@@ -2,12 +2,16 @@
 #include "app/journal.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "app/journal_layout.h"
 
 struct app_recorder {
-    FILE *file;
+    FILE *file;  // until it begins, memory:
+    char *early; // [early_size] blocks that will follow the header
+    size_t early_size;
+    bool begun;
     char path[512];
     bool failed;
     uint16_t *row_hash; // [capacity] grows by doubling
@@ -50,17 +54,24 @@ static void put_header(app_recorder *r, const app_journal_header *h) {
     }
 }
 
-app_recorder *app_recorder_open(const char *path, const app_journal_header *header) {
-    FILE *file = fopen(path, "wb");
-    if (!file) {
-        core_fail("cannot write '%s': %s", path, strerror(errno));
-        return NULL;
-    }
+app_recorder *app_recorder_create(void) {
     app_recorder *r = core_alloc(sizeof *r);
-    r->file = file;
+    r->file = open_memstream(&r->early, &r->early_size);
+    r->failed = r->file == NULL;
+    return r;
+}
+
+bool app_recorder_begin(app_recorder *r, const char *path, const app_journal_header *header) {
+    bool kept = r->file && fclose(r->file) == 0 && !r->failed;
+    r->file = fopen(path, "wb");
+    r->begun = kept && r->file;
+    if (!r->begun) {
+        return core_fail("cannot write '%s': %s", path, strerror(errno));
+    }
     snprintf(r->path, sizeof r->path, "%s", path);
     put_header(r, header);
-    return r;
+    put(r, r->early, r->early_size);
+    return true;
 }
 
 uint32_t app_journal_columns(const core_columns *set, uint32_t *out) {
@@ -121,13 +132,16 @@ void app_recorder_saved(app_recorder *r, const char *name, const char *text, siz
 }
 
 bool app_recorder_close(app_recorder *r, uint64_t hash) {
-    put_u32(r, JOURNAL_DONE);
-    put_u64(r, hash);
-    bool ok = fclose(r->file) == 0 && !r->failed;
+    if (r->begun) {
+        put_u32(r, JOURNAL_DONE);
+        put_u64(r, hash);
+    }
+    bool ok = !r->file || (fclose(r->file) == 0 && !r->failed);
     if (!ok) {
         core_fail("cannot write '%s': %s", r->path, strerror(errno));
     }
+    free(r->early);
     core_free(r->row_hash);
     core_free(r);
-    return ok;
+    return ok || !r->begun;
 }

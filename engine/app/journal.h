@@ -38,12 +38,15 @@ typedef struct app_journal_header {
 
 // ---- writing ----
 typedef struct app_recorder app_recorder;
-app_recorder *app_recorder_open(const char *path, const app_journal_header *header);
+// Made before the scene's files run, which may read saved data; begin opens the file, when it is
+// known what the run starts with. False + core_fail when the file cannot be written.
+app_recorder *app_recorder_create(void);
+bool app_recorder_begin(app_recorder *r, const char *path, const app_journal_header *header);
 // After a step: the events it began with, then the state it ended in.
 void app_recorder_step(app_recorder *r, const gfx_event *event, uint32_t count, const scene *s);
 // Saved data that the script read (NULL: there was none): it is no part of the game's files.
 void app_recorder_saved(app_recorder *r, const char *name, const char *text, size_t size);
-// Writes the end and closes. False + core_fail when any write failed.
+// Writes the end, closes, frees. False + core_fail when any write failed; true when it never began.
 bool app_recorder_close(app_recorder *r, uint64_t hash);
 
 // ---- reading ----

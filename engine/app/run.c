@@ -96,11 +96,8 @@ static bool open_outputs(app_run *r) {
         return app_fail(r, APP_EXIT_USAGE);
     }
     app_start_compare_files(r);
-    if (o->record) {
-        r->recorder = app_recorder_open(o->record, &r->start);
-        return r->recorder || app_fail(r, APP_EXIT_USAGE);
-    }
-    return true;
+    return !r->recorder || app_recorder_begin(r->recorder, o->record, &r->start) ||
+           app_fail(r, APP_EXIT_USAGE);
 }
 
 static void write_results(app_run *r) {
@@ -145,6 +142,7 @@ bool app_run_open(app_run *r) {
     if (r->failed != APP_EXIT_FINE || !mount_files(r)) {
         return false;
     }
+    r->recorder = r->opt->record ? app_recorder_create() : NULL;
     bool begun = app_scene_open(r);
     if (begun) {
         app_end_of_run(r);

@@ -197,8 +197,12 @@ bool script_json_read(lua_State *L, const char *text, size_t size) {
         for (const char *c = text; end && c < end && c < text + size; c++) {
             line += *c == '\n';
         }
-        return core_fail_quiet("JSON: line %d, near \"%.20s\": not valid JSON", line,
-                               end && end < text + size ? end : "the end");
+        char near[21] = "the end";
+        for (size_t i = 0; end && end + i < text + size && i < sizeof near - 1; i++) {
+            near[i] = end[i] >= 32 && end[i] < 127 ? end[i] : '?'; // it goes to terminals
+            near[i + 1] = 0;
+        }
+        return core_fail_quiet("JSON: line %d, near \"%s\": not valid JSON", line, near);
     }
     push_item(L, root);
     cJSON_Delete(root);
