@@ -2,7 +2,7 @@
 #ifndef APP_FILES_H
 #define APP_FILES_H
 
-#include "core/base.h"
+#include "core/vfs.h"
 
 #define APP_PATH_MAX 1024
 
@@ -21,5 +21,9 @@ bool app_find_scene(const char *given, app_scene_path *out);
 // Folder that holds assets/: $CORSAC_HOME, else beside or above the program, else
 // ../share/corsac. False when there is none.
 bool app_home(char *out, size_t size);
+
+// Whether a model, its parts or a sound changed since it was read, and the new file can be read. A
+// broken one is logged; the old goes on.
+bool app_assets_changed(core_vfs *vfs);
 
 #endif

@@ -144,12 +144,17 @@ static void ask_for_ghost(app_run *r) {
 }
 
 // Scripts not while a run is recorded or replayed: what changed is not in the recording. Shaders
-// change nothing but the picture; their files are looked at every half second or so.
+// and images change nothing but the picture; their files are looked at every half second or so.
+// Models and sounds are part of the simulation: with a new one that can be read, the scene starts
+// anew.
 static void watch(app_run *r) {
-    if (r->opt->watch && !r->recorder && !r->replay) {
+    bool live = r->opt->watch && !r->recorder && !r->replay;
+    if (live) {
         script_reload_changed(r->script);
     }
-    if (r->opt->watch && r->device && r->report.frames % 30 == 0) {
+    bool now = r->opt->headless || r->report.frames % 30 == 0;
+    r->reload |= live && now && app_assets_changed(r->vfs);
+    if (r->opt->watch && now && r->device) {
         gfx_device_reload(r->device); // a broken shader is logged and keeps its last form
     }
 }

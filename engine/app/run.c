@@ -75,6 +75,9 @@ static bool choose_simd(app_run *r) {
 static bool mount_files(app_run *r) {
     char home[APP_PATH_MAX], assets[APP_PATH_MAX + 16];
     r->vfs = core_vfs_create();
+    if (r->opt->watch) {
+        core_vfs_watch(r->vfs);
+    }
     if (app_home(home, sizeof home)) {
         snprintf(assets, sizeof assets, "%s/assets", home);
         if (!core_vfs_mount(r->vfs, assets, "", false)) {

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,12 +20,25 @@ typedef struct mount {
     char dir[PATH_MAX];         // real path
 } mount;
 
+typedef struct watched {
+    char path[CORE_VFS_PATH_MAX];
+    uint64_t stamp;
+} watched;
+
 struct core_vfs {
     mount *mounts;
     size_t count;
+    bool watches;
+    pthread_mutex_t lock; // of the list below: images are read by other threads
+    watched *seen;
+    size_t seen_count, seen_capacity;
 };
 
-core_vfs *core_vfs_create(void) { return core_alloc(sizeof(core_vfs)); }
+core_vfs *core_vfs_create(void) {
+    core_vfs *vfs = core_alloc(sizeof *vfs);
+    pthread_mutex_init(&vfs->lock, NULL);
+    return vfs;
+}
 
 void core_vfs_destroy(core_vfs *vfs) {
     if (!vfs) {
@@ -33,6 +47,8 @@ void core_vfs_destroy(core_vfs *vfs) {
     for (size_t i = 0; i < vfs->count; ++i) {
         close(vfs->mounts[i].folder);
     }
+    pthread_mutex_destroy(&vfs->lock);
+    core_free(vfs->seen);
     core_free(vfs->mounts);
     core_free(vfs);
 }
@@ -237,11 +253,57 @@ static bool locate(const core_vfs *vfs, const char *path, char normal[CORE_VFS_P
     return find(vfs, normal, f);
 }
 
+static uint64_t stamp_of(const struct stat *info) {
+    const uint64_t facts[] = {(uint64_t)info->st_mtim.tv_sec, (uint64_t)info->st_mtim.tv_nsec,
+                              (uint64_t)info->st_size, info->st_ino, info->st_dev};
+    uint64_t stamp = core_hash(facts, sizeof facts, 0);
+    return stamp ? stamp : 1;
+}
+
+static void note_read(core_vfs *vfs, const char *normal, const struct stat *info) {
+    pthread_mutex_lock(&vfs->lock);
+    size_t i = 0;
+    while (i < vfs->seen_count && strcmp(vfs->seen[i].path, normal) != 0) {
+        i++;
+    }
+    if (i == vfs->seen_capacity) {
+        size_t grown = CORE_MAX(16u, vfs->seen_capacity * 2);
+        vfs->seen = core_realloc(vfs->seen, vfs->seen_capacity * sizeof *vfs->seen,
+                                 grown * sizeof *vfs->seen);
+        vfs->seen_capacity = grown;
+    }
+    vfs->seen_count = CORE_MAX(vfs->seen_count, i + 1);
+    strcpy(vfs->seen[i].path, normal);
+    vfs->seen[i].stamp = stamp_of(info);
+    pthread_mutex_unlock(&vfs->lock);
+}
+
+void core_vfs_watch(core_vfs *vfs) { vfs->watches = true; }
+
+bool core_vfs_changed(core_vfs *vfs, char out[CORE_VFS_PATH_MAX]) {
+    bool changed = false;
+    pthread_mutex_lock(&vfs->lock);
+    for (size_t i = 0; i < vfs->seen_count && !changed; i++) {
+        watched *w = &vfs->seen[i];
+        uint64_t stamp = core_vfs_stamp(vfs, w->path);
+        changed = stamp && stamp != w->stamp; // a file that is gone may be about to come back
+        if (changed) {
+            w->stamp = stamp;
+            strcpy(out, w->path);
+        }
+    }
+    pthread_mutex_unlock(&vfs->lock);
+    return changed;
+}
+
 void *core_vfs_read(core_vfs *vfs, const char *path, size_t *size) {
     char normal[CORE_VFS_PATH_MAX];
     found f;
     if (!require(vfs, path, normal, &f)) {
         return NULL;
+    }
+    if (vfs->watches) {
+        note_read(vfs, normal, &f.info);
     }
     void *data = core_file_read_at(f.folder, f.name, false, normal, size);
     close(f.folder);
@@ -265,10 +327,7 @@ uint64_t core_vfs_stamp(core_vfs *vfs, const char *path) {
         return 0;
     }
     close(f.folder);
-    const uint64_t facts[] = {(uint64_t)f.info.st_mtim.tv_sec, (uint64_t)f.info.st_mtim.tv_nsec,
-                              (uint64_t)f.info.st_size, f.info.st_ino, f.info.st_dev};
-    uint64_t stamp = core_hash(facts, sizeof facts, 0);
-    return stamp ? stamp : 1;
+    return stamp_of(&f.info);
 }
 
 bool core_vfs_resolve(core_vfs *vfs, const char *path, char *out, size_t out_size) {

@@ -34,4 +34,10 @@ bool core_vfs_resolve(core_vfs *vfs, const char *path, char *out, size_t out_siz
 // Modification stamp (changes when the file does), 0 when absent: hot reload polls it.
 uint64_t core_vfs_stamp(core_vfs *vfs, const char *path);
 
+// From here on remembers what is read, so that core_vfs_changed can tell which of it is another
+// file now. Reads may come from several threads.
+void core_vfs_watch(core_vfs *vfs);
+// A file that changed since it was read or told last; its normal path goes to out. False: none.
+bool core_vfs_changed(core_vfs *vfs, char out[CORE_VFS_PATH_MAX]);
+
 #endif

@@ -59,6 +59,44 @@ class Reload(SceneCase):
         self.assertIn("speed.lua:1:", text)
         self.assertIn("the old code stays", text)
 
+    def test_a_changed_sound_starts_the_scene_anew_and_a_broken_one_does_not(self):
+        import os
+        import subprocess
+        import wave
+        from support import CORSAC, ROOT
+
+        def beep(path, frames):
+            with wave.open(str(path), "wb") as file:
+                file.setnchannels(1)
+                file.setsampwidth(2)
+                file.setframerate(8000)
+                file.writeframes(b"\0\0" * frames)
+            os.utime(path, ns=(frames, frames))
+        sound = self.write("beep.wav", "")
+        beep(sound, 800)
+        main = self.write("main.lua", """
+            function corsac.load()
+                corsac.log("frames " .. math.floor(corsac.audio.newSound("beep.wav"):getDuration() * 8000 + 0.5))
+            end
+            function corsac.fixed() if corsac.getStep() == 20 then corsac.log("step twenty") end end
+            function corsac.update() local t = os.clock() while os.clock() < t + 0.004 do end end""")
+        run = subprocess.Popen([CORSAC, "run", str(main), "--headless", "--watch", "--steps", "400"],
+                               cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        heard = []
+        for line in run.stderr:
+            heard.append(line)
+            if "step twenty" in line and "frames 1600" not in "".join(heard):
+                beep(sound, 1600)
+            elif "step twenty" in line:
+                sound.write_bytes(b"RIFF")
+        run.wait(60)
+        run.stderr.close()
+        text = "".join(heard)
+        self.assertEqual(run.returncode, 0, text)
+        self.assertIn("beep.wav changed: the scene starts anew", text)
+        self.assertEqual([line.split()[-1] for line in heard if "frames " in line], ["800", "1600"], text)
+        self.assertIn("beep.wav changed and cannot be read: the scene goes on as it is", text)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -203,6 +203,25 @@ static void stamps_follow_the_file(void) {
     TEST_ASSERT_EQUAL_UINT64(0, core_vfs_stamp(vfs, "one.txt"));
 }
 
+static void what_was_read_is_watched(void) {
+    char path[CORE_VFS_PATH_MAX];
+    size_t size;
+    core_free(core_vfs_read(vfs, "models/fox.cmesh", &size)); // before: not remembered
+    core_vfs_watch(vfs);
+    core_free(core_vfs_read(vfs, "./one.txt", &size));
+    TEST_ASSERT_FALSE(core_vfs_changed(vfs, path));
+    put("a/models/fox.cmesh", "another fox");
+    TEST_ASSERT_FALSE(core_vfs_changed(vfs, path));
+    put("a/one.txt", "one of A");
+    TEST_ASSERT_TRUE(core_vfs_changed(vfs, path));
+    TEST_ASSERT_EQUAL_STRING("one.txt", path);
+    TEST_ASSERT_FALSE(core_vfs_changed(vfs, path)); // told once
+    TEST_ASSERT_EQUAL_INT(0, unlink(real("a/one.txt")));
+    TEST_ASSERT_FALSE(core_vfs_changed(vfs, path)); // perhaps it is being written
+    TEST_ASSERT_TRUE(core_vfs_mount(vfs, real("b"), "", false));
+    TEST_ASSERT_TRUE(core_vfs_changed(vfs, path)); // another file hides it
+}
+
 // A second thread keeps swapping a folder or file for a link that leads out.
 typedef struct swap {
     char path[256], away[256];
@@ -264,6 +283,7 @@ int main(void) {
     RUN_TEST(special_files_are_refused_without_waiting);
     RUN_TEST(long_paths_are_refused);
     RUN_TEST(missing_names_get_the_nearest);
+    RUN_TEST(what_was_read_is_watched);
     RUN_TEST(later_mounts_hide_earlier_ones);
     RUN_TEST(writes_stay_in_writable_mounts);
     RUN_TEST(resolve_gives_the_real_path);
