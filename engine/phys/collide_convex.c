@@ -348,12 +348,28 @@ void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, ph
     }
 }
 
-float phys_separation(const phys_geom *a, const phys_geom *b, core_vec3 *normal) {
+float phys_closest_on(const phys_geom *a, const phys_geom *b, core_vec3 *normal, core_vec3 *on_b) {
     if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
         const phys_geom *plane = a->type == PHYS_PLANE ? a : b, *shape = plane == a ? b : a;
         core_vec3 up = phys_mat_col(&plane->axes, 1);
+        feature f;
+        find_feature(shape, core_v3_scale(up, -1.0f), &f);
+        float gap = lowest(shape, up) - core_v3_dot(plane->position, up) - round_radius(shape);
         *normal = plane == a ? up : core_v3_scale(up, -1.0f);
-        return lowest(shape, up) - core_v3_dot(plane->position, up) - round_radius(shape);
+        *on_b = core_v3_mad(f.p[0], up, -round_radius(shape) - (plane == b ? gap : 0.0f));
+        return gap;
+    }
+    core_vec3 middle;
+    float gap;
+    find_normal(a, b, PHYS_APART, normal, &middle, &gap);
+    *on_b = core_v3_mad(middle, *normal, 0.5f * gap);
+    return gap;
+}
+
+float phys_separation(const phys_geom *a, const phys_geom *b, core_vec3 *normal) {
+    if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
+        core_vec3 on_b;
+        return phys_closest_on(a, b, normal, &on_b);
     }
     core_vec3 ca[8], cb[8], d = core_v3_sub(b->position, a->position);
     phys_geom_convex va = make_convex(a, ca), vb = make_convex(b, cb);

@@ -15,6 +15,7 @@ typedef core_handle phys_shape;
 typedef core_handle phys_trigger;
 typedef core_handle phys_field;
 typedef core_handle phys_joint;
+typedef core_handle phys_mover;
 
 typedef enum phys_body_type { PHYS_DYNAMIC, PHYS_STATIC, PHYS_KINEMATIC } phys_body_type;
 typedef enum phys_shape_type {
@@ -263,6 +264,72 @@ uint64_t phys_world_static_version(const phys_world *world);
 // 256 are kept) or a restore: anything may have changed.
 uint32_t phys_world_static_changes(const phys_world *world, uint64_t since, core_aabb *out,
                                    uint32_t capacity, bool *complete);
+
+// Everything a shape (as in a cast) is within `reach` metres of, by body row. As long as the shape
+// moves by a way with dot(normal, way) >= -gap it stays clear of that convex part of the body
+// (separating planes), whatever the way's length. Returns how many; at most `capacity` are written.
+typedef struct phys_touch {
+    phys_body body;
+    core_vec3 point;  // on the body's surface, world
+    core_vec3 normal; // unit, from the body to the shape
+    float gap;        // m; < 0: depth
+} phys_touch;
+uint32_t phys_world_touch(phys_world *world, const phys_shape_desc *shape, core_vec3 position,
+                          core_quat rotation, float reach, const phys_filter *filter,
+                          phys_touch *out, uint32_t capacity);
+
+// ---- character movers ----
+// An upright capsule that goes where it wishes as far as the world lets it: it slides along what
+// it meets, climbs slopes and steps up to its limits, keeps to the ground downhill, rides on
+// bodies that move or turn, pushes dynamic bodies with a limited force. It moves at the end of a
+// step, bodies in their new places; bodies do not feel it but for its push and weight. Between two
+// convex shapes there is a plane that the mover never crosses, so that no speed takes it through
+// (method: sliding planes, solved as a projection; Dykstra 1983).
+typedef enum phys_mover_ground {
+    PHYS_MOVER_AIR,
+    PHYS_MOVER_STEEP, // touches only what is too steep to stand on
+    PHYS_MOVER_GROUND
+} phys_mover_ground;
+typedef struct phys_mover_desc {
+    core_vec3 position;  // of the capsule's centre
+    float radius;        // m, default 0.3
+    float half_height;   // of the capsule's segment (m), default 0.6
+    float slope_limit;   // rad, (0, pi/2), default 50 degrees
+    float step_height;   // m, >= 0, default 0.3; set by phys_mover_desc_default
+    float push_force;    // N, >= 0, default 200
+    float mass;          // kg, > 0: its weight on what it stands on, default 70
+    float gravity_scale; // default 1; 0: flies, the wish's y counts
+    uint32_t layers;     // bit per body layer that is in its way; 0: all
+    uint64_t user;       // the caller's own, never read
+    uint32_t cookie;
+} phys_mover_desc;
+phys_mover_desc phys_mover_desc_default(void);
+// Null + core_fail for bad input. A mover that starts inside a body is pushed out.
+phys_mover phys_mover_create(phys_world *world, const phys_mover_desc *desc);
+// False + core_fail for stale handles, as below.
+bool phys_mover_destroy(phys_world *world, phys_mover mover);
+bool phys_mover_alive(const phys_world *world, phys_mover mover);
+uint32_t phys_mover_count(const phys_world *world);
+uint64_t phys_mover_user(const phys_world *world, phys_mover mover);
+// The velocity to walk at (m/s), seen from the ground, until it is changed. On the ground it turns
+// into the ground's plane and keeps its length.
+bool phys_mover_walk(phys_world *world, phys_mover mover, core_vec3 velocity);
+// Leaves the ground in the next step with this speed upwards (m/s, > 0) and the ground's velocity.
+// Also in the air: whether that is allowed is the caller's rule.
+bool phys_mover_jump(phys_world *world, phys_mover mover, float speed);
+bool phys_mover_set_position(phys_world *world, phys_mover mover, core_vec3 position);
+// New sizes (m), the feet stay. *fits false and nothing changed where a body is in the way.
+bool phys_mover_resize(phys_world *world, phys_mover mover, float radius, float half_height,
+                       bool *fits);
+typedef struct phys_mover_state {
+    core_vec3 position;
+    core_vec3 velocity; // of the last step, platform included (m/s)
+    phys_mover_ground ground;
+    phys_body body;          // stands on this one; null in the air
+    core_vec3 point, normal; // of the ground; normal unit, of the surface (in the air 0, +y)
+    float turn;              // about +y by which the ground turned in the last step (rad)
+} phys_mover_state;
+bool phys_mover_read(const phys_world *world, phys_mover mover, phys_mover_state *out);
 
 // ---- snapshot ----
 // The whole state: bodies, contacts with their impulses, triggers, fields, rules. A world restored

@@ -5,6 +5,7 @@
 #include "phys/geom.h"
 #include "phys/joint.h"
 #include "phys/motion.h"
+#include "phys/mover.h"
 #include "phys/phys.h"
 #include "phys/vec.h"
 
@@ -271,6 +272,7 @@ struct phys_world {
     phys_triggers triggers;
     phys_visits visits;
     phys_fields fields;
+    phys_movers movers;
     uint32_t rule[32];               // bit b of rule[a]: layers a and b collide
     phys_event_list events, pending; // of the last step; of removals since
     phys_pair_map map;
@@ -400,6 +402,8 @@ CORE_SIMD_DECLARE(void, phys_narrow_balls,
 void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 // Distance of two shapes (<= 0: overlap) and the unit direction from a to b along which it is.
 float phys_separation(const phys_geom *a, const phys_geom *b, core_vec3 *normal);
+// The same, and the point of b's surface that is closest.
+float phys_closest_on(const phys_geom *a, const phys_geom *b, core_vec3 *normal, core_vec3 *on_b);
 
 // sweep.c: a shape in motion about its body's centre of mass. extent: its farthest reach from
 // there.
