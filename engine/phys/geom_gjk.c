@@ -9,6 +9,7 @@
 #define GJK_MAX_ITERATIONS 64
 #define EPA_MAX_VERTICES   96
 #define EPA_MAX_FACES      192
+#define SLIVER             1e-9 // relative height of a tetrahedron that counts as flat
 #define EPA_TOLERANCE      1e-7 // metres: curved sets are approached, never reached
 
 typedef struct support {
@@ -87,7 +88,9 @@ static dvec reduce_triangle(simplex *x) {
     return v;
 }
 
-// The origin is inside when it is on the inner side of all four faces. *inside is set then.
+// The origin is inside when it is on the inner side of all four faces. *inside is set then. Of a
+// tetrahedron without volume (the supports of a cylinder's rim lie close together) no side is sure:
+// all its faces are asked.
 static dvec reduce_tetrahedron(simplex *x, bool *inside) {
     static const int face[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
     dvec best_v = {0, 0, 0}, zero = {0, 0, 0};
@@ -96,8 +99,10 @@ static dvec reduce_tetrahedron(simplex *x, bool *inside) {
     for (int f = 0; f < 4; f++) {
         dvec a = x->s[face[f][0]].w, b = x->s[face[f][1]].w, c = x->s[face[f][2]].w;
         dvec n = d_cross(d_sub(b, a), d_sub(c, a));
-        double inner = d_dot(n, d_sub(x->s[face[f][3]].w, a)), side = -d_dot(n, a);
-        if ((inner > 0 && side >= 0) || (inner < 0 && side <= 0)) {
+        dvec height = d_sub(x->s[face[f][3]].w, a);
+        double inner = d_dot(n, height), side = -d_dot(n, a);
+        bool flat = inner * inner <= SLIVER * SLIVER * d_dot(n, n) * d_dot(height, height);
+        if (!flat && ((inner > 0 && side >= 0) || (inner < 0 && side <= 0))) {
             continue;
         }
         double w[3];

@@ -230,3 +230,65 @@ bool phys_world_closest(phys_world *w, core_vec3 point, float reach, const phys_
     core_arena_rewind(&w->scratch, mark);
     return out->hit;
 }
+
+static uint32_t row_order(const phys_world *w, uint32_t shape) {
+    return phys_slot_row(&w->bodies.set, w->shapes.body[shape]);
+}
+
+// Insertion sort by body row, then shape row: the answer does not depend on the order of search.
+static void sort_candidates(const phys_world *w, candidates *c) {
+    for (uint32_t i = 1; i < c->count; i++) {
+        uint32_t shape = c->row[i], body = row_order(w, shape), k = i;
+        for (; k > 0; k--) {
+            uint32_t before = row_order(w, c->row[k - 1]);
+            if (before < body || (before == body && c->row[k - 1] < shape)) {
+                break;
+            }
+            c->row[k] = c->row[k - 1];
+        }
+        c->row[k] = shape;
+    }
+}
+
+static bool boxes_meet(const phys_box *a, core_aabb b) {
+    return a->lo[0] <= b.max.x && a->hi[0] >= b.min.x && a->lo[1] <= b.max.y &&
+           a->hi[1] >= b.min.y && a->lo[2] <= b.max.z && a->hi[2] >= b.min.z;
+}
+
+uint32_t phys_world_touch(phys_world *w, const phys_shape_desc *shape, core_vec3 position,
+                          core_quat rotation, float reach, const phys_filter *filter,
+                          phys_touch *out, uint32_t capacity) {
+    phys_geom probe;
+    if (!probe_geom("touch", shape, position, rotation, &probe) ||
+        !check_line("touch", position, core_v3(reach, 0, 0))) {
+        return 0;
+    }
+    size_t mark = core_arena_mark(&w->scratch);
+    core_aabb b = phys_geom_bounds(&probe);
+    phys_box box = box_of(b.min, b.max, reach);
+    candidates c = find_candidates(w, &box);
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < c.count; k++) {
+        phys_geom g = phys_shape_geom(w, c.row[k]);
+        if (wanted(w, filter, row_order(w, c.row[k])) && boxes_meet(&box, phys_geom_bounds(&g))) {
+            c.row[kept++] = c.row[k];
+        }
+    }
+    c.count = kept;
+    sort_candidates(w, &c);
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < c.count; k++) {
+        phys_geom g = phys_shape_geom(w, c.row[k]);
+        phys_touch t = {.body = core_columns_handle(&w->bodies.set, row_order(w, c.row[k]))};
+        t.gap = phys_closest_on(&probe, &g, &t.normal, &t.point);
+        t.normal = core_v3_scale(t.normal, -1.0f);
+        if (t.gap <= reach) {
+            if (count < capacity) {
+                out[count] = t;
+            }
+            count++;
+        }
+    }
+    core_arena_rewind(&w->scratch, mark);
+    return count;
+}

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#define SNAPSHOT_MAGIC 0x31536870u // "phS1"
+#define SNAPSHOT_MAGIC 0x32536870u // "phS2"
 
 typedef struct header {
     uint32_t magic, sets;
@@ -13,16 +13,10 @@ typedef struct header {
     double time;
 } header;
 
-static int world_sets(phys_world *w, core_columns *set[8]) {
-    core_columns *all[] = {&w->bodies.set,   &w->shapes.set, &w->balls.set,  &w->contacts.set,
-                           &w->triggers.set, &w->visits.set, &w->fields.set, &w->joints.set};
-    memcpy(set, all, sizeof all);
-    return (int)CORE_COUNT_OF(all);
-}
-
 size_t phys_world_save_size(phys_world *w) {
-    core_columns *set[8];
-    int n = world_sets(w, set);
+    core_columns *set[PHYS_SETS];
+    const int n = PHYS_SETS;
+    phys_world_sets(w, set);
     size_t bytes = sizeof(header);
     for (int i = 0; i < n; i++) {
         bytes += sizeof(uint64_t) + (core_columns_save_size(set[i]) + 7) / 8 * 8;
@@ -31,8 +25,9 @@ size_t phys_world_save_size(phys_world *w) {
 }
 
 void phys_world_save(phys_world *w, void *out) {
-    core_columns *set[8];
-    int n = world_sets(w, set);
+    core_columns *set[PHYS_SETS];
+    const int n = PHYS_SETS;
+    phys_world_sets(w, set);
     header h = {SNAPSHOT_MAGIC, (uint32_t)n, phys_world_save_size(w), w->gravity, {0}, w->time};
     memcpy(h.rule, w->rule, sizeof h.rule);
     memset(out, 0, (size_t)h.bytes);
@@ -49,8 +44,9 @@ void phys_world_save(phys_world *w, void *out) {
 
 // Checks the frame before anything is changed; each set then checks its own part.
 bool phys_world_restore(phys_world *w, const void *data, size_t size) {
-    core_columns *set[8];
-    int n = world_sets(w, set);
+    core_columns *set[PHYS_SETS];
+    const int n = PHYS_SETS;
+    phys_world_sets(w, set);
     header h;
     if (size < sizeof h) {
         return core_fail("phys restore: %zu bytes are no snapshot", size);

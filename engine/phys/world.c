@@ -86,6 +86,7 @@ static bool make_storage(phys_world *w, uint32_t max_bodies) {
            phys_triggers_init(&w->triggers, "phys.triggers", 1u << 16) &&
            phys_visits_init(&w->visits, "phys.visits", 1u << 20) &&
            phys_fields_init(&w->fields, "phys.fields", 1u << 12) &&
+           phys_movers_init(&w->movers, "phys.movers", 1u << 16) &&
            core_arena_init(&w->scratch, "phys.scratch", (size_t)16 << 30);
 }
 
@@ -131,6 +132,7 @@ void phys_world_destroy(phys_world *w) {
     core_columns_release(&w->triggers.set);
     core_columns_release(&w->visits.set);
     core_columns_release(&w->fields.set);
+    core_columns_release(&w->movers.set);
     core_arena_release(&w->scratch);
     phys_pairs_release(w);
     phys_hulls_release(w);
@@ -294,6 +296,7 @@ bool phys_world_step(phys_world *w, float dt) {
     if (all_at_rest(w)) {
         w->islands = 0;
         w->time += (double)dt;
+        phys_movers_update(w, dt, true);
         phys_events_triggers(w);
         core_stage_end(w->metrics, CORE_STAGE_PHYS);
         return true;
@@ -316,18 +319,26 @@ bool phys_world_step(phys_world *w, float dt) {
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
     phys_joints_break(w);
     finish_step(w, dt);
+    phys_movers_update(w, dt, false);
     phys_events_triggers(w);
     core_stage_end(w->metrics, CORE_STAGE_PHYS);
     return true;
 }
 
+void phys_world_sets(phys_world *w, core_columns *set[PHYS_SETS]) {
+    core_columns *all[PHYS_SETS] = {&w->bodies.set, &w->shapes.set,   &w->balls.set,
+                                    &w->contacts.set, &w->joints.set, &w->triggers.set,
+                                    &w->visits.set,   &w->fields.set, &w->movers.set};
+    memcpy(set, all, sizeof all);
+}
+
 int phys_world_state(const phys_world *w, const core_columns **out, int capacity) {
-    const core_columns *set[] = {&w->bodies.set, &w->shapes.set,   &w->balls.set,  &w->contacts.set,
-                                 &w->joints.set, &w->triggers.set, &w->visits.set, &w->fields.set};
-    for (int i = 0; out != NULL && i < capacity && i < (int)CORE_COUNT_OF(set); i++) {
+    core_columns *set[PHYS_SETS];
+    phys_world_sets((phys_world *)w, set);
+    for (int i = 0; out != NULL && i < capacity && i < PHYS_SETS; i++) {
         out[i] = set[i];
     }
-    return (int)CORE_COUNT_OF(set);
+    return PHYS_SETS;
 }
 
 size_t phys_world_bytes(const phys_world *w) {
@@ -335,7 +346,7 @@ size_t phys_world_bytes(const phys_world *w) {
            core_columns_bytes(&w->balls.set) + core_columns_bytes(&w->contacts.set) +
            core_columns_bytes(&w->joints.set) + w->joint_pairs.capacity * sizeof(uint64_t) +
            core_columns_bytes(&w->triggers.set) + core_columns_bytes(&w->visits.set) +
-           core_columns_bytes(&w->fields.set) +
+           core_columns_bytes(&w->fields.set) + core_columns_bytes(&w->movers.set) +
            (w->events.capacity + w->pending.capacity) * sizeof(phys_event) + w->scratch.committed +
            w->map.capacity * (sizeof(uint64_t) + sizeof(uint32_t)) +
            w->pairs.capacity * sizeof(phys_pair) + w->order_capacity * sizeof(uint32_t) +

@@ -350,6 +350,10 @@ static inline core_vec3 phys_lock_turn(uint8_t locks, core_vec3 w) {
     return phys_lock_motion((uint8_t)(locks >> 3), w);
 }
 
+// world.c: the sets of state, in the order of hashes and snapshots.
+enum { PHYS_SETS = 9 };
+void phys_world_sets(phys_world *world, core_columns *set[PHYS_SETS]);
+
 // shape.c
 bool phys_shape_check(const phys_shape_desc *shape, phys_body_type body);
 // hulls.c: number of the hull of a description's points, 0 + core_fail when they span none.

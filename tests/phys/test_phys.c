@@ -62,8 +62,8 @@ static core_vec3 speed(phys_world *w, phys_body b) {
     return p;
 }
 static uint64_t state_hash(phys_world *w) {
-    const core_columns *set[8];
-    int n = phys_world_state(w, set, 8);
+    const core_columns *set[16];
+    int n = phys_world_state(w, set, 16);
     uint64_t h = 0, column[CORE_COLUMNS_MAX];
     for (int i = 0; i < n; i++) {
         core_columns_hash(set[i], column);
