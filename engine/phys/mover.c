@@ -160,8 +160,8 @@ bool phys_mover_resize(phys_world *w, phys_mover mover, float radius, float half
         uint32_t row = phys_body_row(w, m->body[i]);
         if (row != CORE_NO_ROW) {
             core_vec3 rise = core_v3_sub(at, m->position[i]);
-            m->place[i] = core_v3_add(m->place[i],
-                                      phys_unrotate(phys_body_quat(&w->bodies, row), rise));
+            m->place[i] =
+                core_v3_add(m->place[i], phys_unrotate(phys_body_quat(&w->bodies, row), rise));
         }
         m->position[i] = at;
         m->radius[i] = radius;

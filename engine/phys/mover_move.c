@@ -231,8 +231,7 @@ static void fly(mover_step *m, core_vec3 *at) {
     uint32_t i = m->row;
     bool falls = all->gravity_scale[i] != 0.0f;
     core_vec3 wish = falls ? level(all->wish[i]) : all->wish[i];
-    all->drift[i] =
-        core_v3_mad(all->drift[i], m->world->gravity, all->gravity_scale[i] * m->dt);
+    all->drift[i] = core_v3_mad(all->drift[i], m->world->gravity, all->gravity_scale[i] * m->dt);
     slide(m, at, core_v3_scale(core_v3_add(all->drift[i], wish), m->dt), falls);
     look_around(m, *at, 2.0f * SKIN);
     m->planes = 0;

@@ -326,7 +326,7 @@ bool phys_world_step(phys_world *w, float dt) {
 }
 
 void phys_world_sets(phys_world *w, core_columns *set[PHYS_SETS]) {
-    core_columns *all[PHYS_SETS] = {&w->bodies.set, &w->shapes.set,   &w->balls.set,
+    core_columns *all[PHYS_SETS] = {&w->bodies.set,   &w->shapes.set, &w->balls.set,
                                     &w->contacts.set, &w->joints.set, &w->triggers.set,
                                     &w->visits.set,   &w->fields.set, &w->movers.set};
     memcpy(set, all, sizeof all);

@@ -1,6 +1,7 @@
 // corsac.phys: bodies.
 #include "script/bind_body.h"
 #include "script/bind_joint.h"
+#include "script/bind_mover.h"
 #include "script/bind_region.h"
 #include "script/events.h"
 #include "script/internal.h"
@@ -526,8 +527,9 @@ static const bind_module modules[] = {
     {"corsac.phys", "", bind_region_functions},
     {"corsac.phys", "", bind_ask_functions},
     {"corsac.phys", "", bind_joint_functions},
+    {"corsac.phys", "", bind_mover_functions},
     {0}};
-static const bind_type *const types[] = {&bind_body_type, &bind_trigger_type, &bind_field_type,
-                                         &bind_joint_type, NULL};
+static const bind_type *const types[] = {&bind_body_type,  &bind_trigger_type, &bind_field_type,
+                                         &bind_joint_type, &bind_mover_type,   NULL};
 
 const bind_room bind_phys_room = {"phys", modules, types};

@@ -250,6 +250,63 @@ function Joint:isDestroyed() end
 ---Removes it; onBreak is not called.
 function Joint:destroy() end
 
+---An upright capsule that walks: slopes, steps, platforms, pushing.
+---@class corsac.Mover
+local Mover = {}
+
+---Sets the velocity it wishes, seen from the ground, until it is changed; y counts without gravity only.
+---@param x number
+---@param y number
+---@param z number
+function Mover:walk(x, y, z) end
+
+---Leaves the ground, or jumps again in the air: when that is allowed is your rule.
+---@param speed number upwards
+function Mover:jump(speed) end
+
+---Changes its size, feet in place; false and unchanged where it would not fit.
+---@param radius number
+---@param height number in all
+---@return boolean fits
+function Mover:resize(radius, height) end
+
+---Centre of the capsule.
+---@return number x
+---@return number y
+---@return number z
+function Mover:getPosition() end
+
+---How it went in the last step, with the platform it rides on.
+---@return number x
+---@return number y
+---@return number z
+function Mover:getVelocity() end
+
+---"ground", "steep" (touches only what is too steep) or "air", the body it stands on (or nil) and the normal of its surface.
+---@return string ground
+---@return corsac.Body? body
+---@return number x
+---@return number y
+---@return number z
+function Mover:getGround() end
+
+---By how much the ground turned about +y in the last step.
+---@return number turn
+function Mover:getTurn() end
+
+---Puts it elsewhere, at rest.
+---@param x number
+---@param y number
+---@param z number
+function Mover:setPosition(x, y, z) end
+
+---Whether it was destroyed; every other method then raises an error.
+---@return boolean destroyed
+function Mover:isDestroyed() end
+
+---Removes it.
+function Mover:destroy() end
+
 ---A source of light.
 ---@class corsac.Light
 local Light = {}
@@ -1469,6 +1526,22 @@ function corsac.phys.newJoint(options) end
 ---How many joints the world has.
 ---@return integer count
 function corsac.phys.getJointCount() end
+
+---@class corsac.phys.newMover.options
+---@field position? number[] centre of the capsule, m
+---@field radius? number m
+---@field height? number in all, m
+---@field slopeLimit? number steepest ground it stands on, rad
+---@field stepHeight? number highest edge it walks over, m
+---@field pushForce? number most it gives against dynamic bodies, N
+---@field mass? number weighs on what it stands on, kg
+---@field gravityScale? number 0 flies
+---@field layers? table names of the layers in its way
+
+---Makes a character that walks by its own rules at the end of each step.
+---@param options corsac.phys.newMover.options the mover
+---@return corsac.Mover mover
+function corsac.phys.newMover(options) end
 
 ---Camera, lights and what is drawn over the frame.
 corsac.gfx = {}

@@ -1,5 +1,5 @@
-// Character movers: slope and step limits, sliding, platforms, pushing, room to stand up, and random
-// walks that never get into a body.
+// Character movers: slope and step limits, sliding, platforms, pushing, room to stand up, and
+// random walks that never get into a body.
 #include "core/hash.h"
 #include "core/log.h"
 #include "phys/phys.h"
