@@ -46,6 +46,7 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_TEX_AO                 12
 #define GFX_TEX_BLOOM              13
 #define GFX_TEX_DEPTH              14
+#define GFX_TEX_LIGHTS             15
 
 #define GFX_DFG_SIZE           64 // texels a side
 #define GFX_ENVIRONMENT_SIZE   64 // texels a side of a face of the first level
@@ -107,12 +108,13 @@ struct gfx_view_block {
     GFX_VEC4(gain);
 };
 
+#define GFX_SHADOW_COUNT_UNIT 128 // above the number of any shadow view
+
 struct gfx_light_block {
-    GFX_VEC4(position_radius); // world, m
-    GFX_VEC4(color_type);      // linear intensity; GFX_LIGHT_*
-    GFX_VEC4(direction);       // unit, where the light goes; w: number of shadow views
-    GFX_VEC4(spot);            // scale, offset of the squared smooth cone falloff; 1/radius^2;
-                               // w: 1 + first shadow view, 0 without shadow
+    GFX_VEC4(position); // world, m; 1/radius^2. Directional: unit, towards the light; 0
+    GFX_VEC4(color);    // linear intensity; 0 without shadow, else 1 + first shadow view + their
+                        // number * GFX_SHADOW_COUNT_UNIT
+    GFX_VEC4(cone);     // squared smooth falloff: scale against the light's way, offset
 };
 
 // One depth map: a cascade of a sun, a spot, or one of six faces of a point light.

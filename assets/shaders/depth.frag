@@ -3,7 +3,7 @@
 #include "material.glsl"
 
 void main() {
-    if (baseColor(materials[v_material]).a < materials[v_material].params.w) {
+    if (baseColor(v_material).a < v_material.params.w) {
         discard;
     }
 }

@@ -4,8 +4,16 @@
 
 // Light loops. Plain forward walks all lights; clustered walks the ascending list of the fragment's
 // cell, so both add the same terms in the same order and the sums are equal bit for bit.
-layout(std430, binding = GFX_SSBO_LIGHTS) readonly buffer LightBlock { gfx_light_block lights[]; };
 #ifdef USE_CLUSTERED_RENDERING
+// Fragments side by side read different lights: texels are fetched four floats at a time, where a
+// software renderer would take each float of a storage block by itself.
+layout(binding = GFX_TEX_LIGHTS) uniform samplerBuffer u_lights;
+gfx_light_block lightAt(uint n) {
+    int at = int(n) * 3;
+    return gfx_light_block(texelFetch(u_lights, at), texelFetch(u_lights, at + 1),
+                           texelFetch(u_lights, at + 2));
+}
+
 layout(std430, binding = GFX_SSBO_CLUSTER_OFFSETS) readonly buffer OffsetBlock {
     uint clusterOffset[]; // cells + 1
 };
@@ -23,58 +31,56 @@ uint clusterCell() {
                              vec3(last)));
     return (cell.z * u_view.cluster_grid.y + cell.y) * u_view.cluster_grid.x + cell.x;
 }
+#else
+// Fragments side by side read the same light.
+layout(std430, binding = GFX_SSBO_LIGHTS) readonly buffer LightBlock { gfx_light_block lights[]; };
+gfx_light_block lightAt(uint n) { return lights[n]; }
 #endif
 
-// Radiance that a point or spot light adds: inverse square, windowed to zero at its radius (Karis
-// 2013; as glTF KHR_lights_punctual).
-vec3 localLight(gfx_light_block light, Surface s) {
-    vec3 toLight = light.position_radius.xyz - s.position;
+// Radiance that a light adds: inverse square, windowed to zero at the radius (Karis 2013; as glTF
+// KHR_lights_punctual). A sun is a light at distance 1, whose window is 1.
+vec3 lightTerm(gfx_light_block light, Surface s) {
+    vec3 toLight = light.position.xyz - (light.position.w > 0.0 ? s.position : vec3(0.0));
     float d2 = dot(toLight, toLight);
-    float x = d2 * light.spot.z; // (d/radius)^2
-    if (x >= 1.0) {
-        return vec3(0.0);
-    }
+    float x = min(d2 * light.position.w, 1.0); // (d/radius)^2
     vec3 l = toLight * inversesqrt(max(d2, 1e-12));
     float window = 1.0 - x * x;
-    float falloff = window * window / max(d2, 1e-4);
-    float cone = clamp(dot(-light.direction.xyz, l) * light.spot.x + light.spot.y, 0.0, 1.0);
-    float reach = falloff * cone * cone;
+    float cone = clamp(dot(light.cone.xyz, l) + light.cone.w, 0.0, 1.0);
+    float reach = window * window * cone * cone / max(d2, 1e-4);
 #ifdef USE_SHADOWS
     if (reach > 0.0) {
         reach *= shadowTerm(light, s, l);
     }
 #endif
-    return shade(s, l) * light.color_type.rgb * reach;
+    return shade(s, l) * light.color.rgb * reach;
 }
 
+// Suns first, then point and spot lights: all of them, or those that the cell's list names.
 vec3 directLight(Surface s) {
-    vec3 sum = vec3(0.0);
-    uint directional = u_view.light_count.x;
-    for (uint i = 0u; i < directional; ++i) {
-        vec3 l = -lights[i].direction.xyz;
-        vec3 light = shade(s, l) * lights[i].color_type.rgb;
-#ifdef USE_SHADOWS
-        light *= shadowTerm(lights[i], s, l);
-#endif
-        sum += light;
+    uint suns = u_view.light_count.x, count = suns + u_view.light_count.y;
+#ifdef USE_CLUSTERED_RENDERING
+    uint cell = clusterCell(), first = clusterOffset[cell] - suns, listed = suns;
+    if ((first + suns & GFX_CLUSTER_ALL) != 0u) { // the list was longer than the cap
+        listed = count;
+    } else {
+        count = (clusterOffset[cell + 1u] & ~GFX_CLUSTER_ALL) - first;
     }
+#endif
     // Beyond the virtual far plane no point or spot light reaches, in either renderer.
     if (viewDepth(gl_FragCoord.z) > u_view.depth_range.z) {
-        return sum;
+        count = suns;
     }
+    vec3 sum = vec3(0.0);
+    if (count > 0u) {
+        uint i = 0u;
+        do { // a test before the body would make software renderers run it once more
 #ifdef USE_CLUSTERED_RENDERING
-    uint cell = clusterCell();
-    uint first = clusterOffset[cell], end = clusterOffset[cell + 1u] & ~GFX_CLUSTER_ALL;
-    bool all = (first & GFX_CLUSTER_ALL) != 0u; // the list was longer than the cap
-    end = all ? u_view.light_count.y : end;
-    for (uint i = all ? 0u : first; i < end; ++i) {
-        sum += localLight(lights[directional + (all ? i : clusterLight[i])], s);
-    }
+            uint n = i < listed ? i : suns + clusterLight[first + i];
 #else
-    uint end = directional + u_view.light_count.y;
-    for (uint i = directional; i < end; ++i) {
-        sum += localLight(lights[i], s);
-    }
+            uint n = i;
 #endif
+            sum += lightTerm(lightAt(n), s);
+        } while (++i < count);
+    }
     return sum;
 }

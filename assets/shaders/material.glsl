@@ -2,11 +2,7 @@
 #include "common.glsl"
 
 in vec4 v_color;
-flat in uint v_material;
-
-layout(std430, binding = GFX_SSBO_MATERIALS) readonly buffer MaterialBlock {
-    gfx_material_block materials[];
-};
+flat in gfx_material_block v_material;
 #ifdef USE_TEXTURES
 in vec2 v_uv;
 layout(binding = GFX_TEX_BASE_COLOR) uniform sampler2D u_baseColor;

@@ -71,7 +71,7 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
 }
 
 void main() {
-    gfx_material_block m = materials[v_material];
+    gfx_material_block m = v_material;
     vec4 base = baseColor(m);
 #ifdef USE_ALPHA_MASK
     if (base.a < m.params.w) {

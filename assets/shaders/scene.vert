@@ -31,7 +31,11 @@ invariant gl_Position;
 #if !defined(DEPTH_ONLY) || defined(USE_ALPHA_MASK)
 #define WITH_MATERIAL
 out vec4 v_color;
-flat out uint v_material;
+// Read once a vertex, not once a fragment.
+flat out gfx_material_block v_material;
+layout(std430, binding = GFX_SSBO_MATERIALS) readonly buffer MaterialBlock {
+    gfx_material_block materials[];
+};
 #ifdef USE_TEXTURES
 out vec2 v_uv;
 #endif
@@ -81,7 +85,7 @@ void main() {
     v_uv = a_uv;
 #endif
     v_color = a_color * instance.color;
-    v_material = instance.index.x;
+    v_material = materials[instance.index.x];
 #endif
 #ifndef DEPTH_ONLY
     vec3 normal = a_normal;

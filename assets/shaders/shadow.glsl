@@ -11,8 +11,9 @@ const float MAX_REACH = 24.0; // texels
 
 // The view of a light that a point falls into.
 uint shadowViewOf(gfx_light_block light, vec3 position) {
-    uint first = uint(light.spot.w) - 1u, count = uint(light.direction.w);
-    if (light.color_type.w == float(GFX_LIGHT_DIRECTIONAL)) {
+    uint code = uint(light.color.w), unit = uint(GFX_SHADOW_COUNT_UNIT);
+    uint first = code % unit - 1u, count = code / unit;
+    if (light.position.w == 0.0) { // a sun
         float depth = viewDepth(gl_FragCoord.z);
         uint i = 0u;
         while (i + 1u < count && depth > shadowViews[first + i].depth.z) {
@@ -23,7 +24,7 @@ uint shadowViewOf(gfx_light_block light, vec3 position) {
     if (count == 1u) {
         return first;
     }
-    vec3 d = position - light.position_radius.xyz, a = abs(d); // faces +x -x +y -y +z -z
+    vec3 d = position - light.position.xyz, a = abs(d); // faces +x -x +y -y +z -z
     uint face = a.x >= a.y && a.x >= a.z ? (d.x > 0.0 ? 0u : 1u)
               : a.y >= a.z               ? (d.y > 0.0 ? 2u : 3u)
                                          : (d.z > 0.0 ? 4u : 5u);
@@ -131,7 +132,7 @@ float penumbraWidth(gfx_shadow_block v, Receiver r, float texel, float turn) {
 
 // 1 where light reaches, 0 in full shadow.
 float shadowTerm(gfx_light_block light, Surface s, vec3 l) {
-    if (light.spot.w == 0.0 || dot(s.flatNormal, l) <= 0.0) {
+    if (light.color.w == 0.0 || dot(s.flatNormal, l) <= 0.0) {
         return 1.0;
     }
     gfx_shadow_block v = shadowViews[shadowViewOf(light, s.position)];

@@ -26,9 +26,21 @@ void gfx_stream_bind(const gfx_stream *s, GLenum target, GLuint binding, size_t 
     glBindBufferRange(target, binding, s->name, (GLintptr)(s->segment * frame), (GLsizeiptr)bytes);
 }
 
+void gfx_stream_bind_texels(gfx_stream *s, GLuint unit, GLenum format, size_t bytes,
+                            uint32_t frame) {
+    bytes = CORE_MAX(bytes, (size_t)16);
+    if (!s->texels[frame]) {
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &s->texels[frame]);
+    }
+    glTextureBufferRange(s->texels[frame], format, s->name, (GLintptr)(s->segment * frame),
+                         (GLsizeiptr)bytes);
+    glBindTextureUnit(unit, s->texels[frame]);
+}
+
 // The storage lives on until the commands that read it are done.
 void gfx_stream_release(gfx_stream *s) {
     glDeleteBuffers(1, &s->name);
+    glDeleteTextures(GFX_FRAMES, s->texels);
     *s = (gfx_stream){0};
 }
 

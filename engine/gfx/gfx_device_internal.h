@@ -16,11 +16,15 @@ typedef struct gfx_stream {
     GLuint name;
     uint8_t *map;
     size_t segment; // bytes a frame may use
+    GLuint texels[GFX_FRAMES]; // views of the segments as texel buffers, 0: none yet
 } gfx_stream;
 // Pointer to this frame's `bytes`, write-only; grows when too small.
 void *gfx_stream_begin(gfx_stream *stream, size_t bytes, uint32_t frame);
 void gfx_stream_bind(const gfx_stream *stream, GLenum target, GLuint binding, size_t bytes,
                      uint32_t frame);
+// The same as a texel buffer.
+void gfx_stream_bind_texels(gfx_stream *stream, GLuint unit, GLenum format, size_t bytes,
+                            uint32_t frame);
 void gfx_stream_release(gfx_stream *stream);
 
 // Where a mesh lies in the device's vertex and index buffers.
@@ -129,9 +133,8 @@ typedef struct gfx_shadows {
 // Plans the maps of this frame's lights: views, blocks, draw lists of layers that are out of date.
 void gfx_shadows_plan(gfx_device *device, const gfx_world *world, const gfx_view *view);
 bool gfx_shadows_draw(gfx_device *device, gfx_world *world);
-// 1 + number of the first view of a light's row, 0 without shadow; how many views its type has.
-float gfx_shadow_first(const gfx_device *device, uint32_t row);
-float gfx_shadow_view_count(const gfx_device *device, uint32_t type);
+// What gfx_light_block.color.w holds for a light of this row and type.
+float gfx_shadow_code(const gfx_device *device, uint32_t row, uint32_t type);
 void gfx_shadows_release(gfx_shadows *shadows);
 
 // ---- environment (gfx_environment.c) ----

@@ -8,27 +8,30 @@ enum { AUTO_CLUSTERED = 4 };
 
 static void write_light(const gfx_device *d, const gfx_lights *l, uint32_t i,
                         struct gfx_light_block *out) {
-    bool directional = l->type[i] == GFX_DIRECTIONAL;
-    // The cone falls from 1 at cos(inner) to 0 at cos(outer); points have no cone.
+    float r2 = CORE_MIN(l->radius[i] * l->radius[i], 1e37f); // its inverse stays above zero
+    // The cone falls from 1 at cos(inner) to 0 at cos(outer); others have none.
     float scale = 0.0f, offset = 1.0f;
     if (l->type[i] == GFX_SPOT) {
         float outer = core_cosf(l->outer[i]), inner = core_cosf(l->inner[i]);
         scale = 1.0f / CORE_MAX(inner - outer, 1e-4f);
         offset = -outer * scale;
     }
-    float r = l->radius[i];
     *out = (struct gfx_light_block){
-        .position_radius = {l->px[i], l->py[i], l->pz[i], r},
-        .color_type = {l->r[i] * l->intensity[i], l->g[i] * l->intensity[i],
-                       l->b[i] * l->intensity[i], (float)l->type[i]},
-        .direction = {l->dx[i], l->dy[i], l->dz[i], gfx_shadow_view_count(d, l->type[i])},
-        .spot = {scale, offset, directional ? 0.0f : 1.0f / (r * r), gfx_shadow_first(d, i)},
+        .position = {l->px[i], l->py[i], l->pz[i], 1.0f / r2},
+        .color = {l->r[i] * l->intensity[i], l->g[i] * l->intensity[i], l->b[i] * l->intensity[i],
+                  gfx_shadow_code(d, i, l->type[i])},
+        .cone = {-l->dx[i] * scale, -l->dy[i] * scale, -l->dz[i] * scale, offset},
     };
+    if (l->type[i] == GFX_DIRECTIONAL) {
+        const gfx_glsl_vec4 towards = {-l->dx[i], -l->dy[i], -l->dz[i], 0.0f};
+        memcpy(out->position, towards, sizeof towards);
+    }
 }
 
 const struct gfx_light_block gfx_default_sun = {
-    .color_type = {3.0f, 2.9f, 2.7f, GFX_LIGHT_DIRECTIONAL},
-    .direction = {-0.4082f, -0.8165f, -0.4082f, 0.0f},
+    .position = {0.4082f, 0.8165f, 0.4082f, 0.0f},
+    .color = {3.0f, 2.9f, 2.7f, 0.0f},
+    .cone = {0.0f, 0.0f, 0.0f, 1.0f},
 };
 
 // Directional lights first, then the others, each in the order of their rows.
@@ -39,8 +42,7 @@ static void write_lights(gfx_device *d, const gfx_world *world, gfx_light_upload
         gfx_stream_begin(&d->light_block, (n + 1) * sizeof *block, d->frame);
     if (gfx_world_has_default_sun(world)) {
         block[at] = gfx_default_sun;
-        block[at].direction[3] = gfx_shadow_view_count(d, GFX_DIRECTIONAL);
-        block[at++].spot[3] = gfx_shadow_first(d, 0);
+        block[at++].color[3] = gfx_shadow_code(d, 0, GFX_DIRECTIONAL);
     }
     for (uint32_t i = 0; i < n; ++i) {
         if (l->type[i] == GFX_DIRECTIONAL) {
@@ -56,6 +58,8 @@ static void write_lights(gfx_device *d, const gfx_world *world, gfx_light_upload
     out->local = at - out->directional;
     gfx_stream_bind(&d->light_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_LIGHTS, at * sizeof *block,
                     d->frame);
+    gfx_stream_bind_texels(&d->light_block, GFX_TEX_LIGHTS, GL_RGBA32F, at * sizeof *block,
+                           d->frame);
 }
 
 // Sphere round what a light reaches: its own, or for a spot the one round its spherical sector,

@@ -210,8 +210,8 @@ void gfx_shadows_plan(gfx_device *d, const gfx_world *world, const gfx_view *vie
     }
     reserve_layers(s, (uint32_t)world->settings.shadow_size, count);
     if (sun) {
-        const float *along = gfx_default_sun.direction;
-        add_sun(s, world, view, core_v3(along[0], along[1], along[2]), 0.02f);
+        const float *to = gfx_default_sun.position;
+        add_sun(s, world, view, core_v3(-to[0], -to[1], -to[2]), 0.02f);
         first[0] = 1;
     }
     for (uint32_t i = 0; i < lights; ++i) {
@@ -233,12 +233,9 @@ void gfx_shadows_plan(gfx_device *d, const gfx_world *world, const gfx_view *vie
     }
 }
 
-float gfx_shadow_first(const gfx_device *d, uint32_t row) {
-    return (float)((const uint16_t *)d->shadows.first.data)[row];
-}
-
-float gfx_shadow_view_count(const gfx_device *d, uint32_t type) {
-    return (float)d->shadows.views_of_type[type];
+float gfx_shadow_code(const gfx_device *d, uint32_t row, uint32_t type) {
+    uint32_t first = ((const uint16_t *)d->shadows.first.data)[row];
+    return first ? (float)(first + d->shadows.views_of_type[type] * GFX_SHADOW_COUNT_UNIT) : 0.0f;
 }
 
 static bool draw_layer(gfx_device *d, gfx_world *world, uint32_t i, size_t stride) {
