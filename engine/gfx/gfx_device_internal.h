@@ -15,7 +15,7 @@ enum { GFX_FRAMES = 3 }; // frames that the processor may be ahead of the GPU, a
 typedef struct gfx_stream {
     GLuint name;
     uint8_t *map;
-    size_t segment; // bytes a frame may use
+    size_t segment;            // bytes a frame may use
     GLuint texels[GFX_FRAMES]; // views of the segments as texel buffers, 0: none yet
 } gfx_stream;
 // Pointer to this frame's `bytes`, write-only; grows when too small.

@@ -154,9 +154,9 @@ static bool pass_clear(frame *f) {
 
 static bool pass_depth(frame *f) {
     f->device->passes++;
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glNamedFramebufferDrawBuffer(scene_target(f)->name, GL_NONE);
     bool ok = gfx_draws_submit(f->device, f->world, &f->list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glNamedFramebufferDrawBuffer(scene_target(f)->name, GL_COLOR_ATTACHMENT0);
     return ok;
 }
 

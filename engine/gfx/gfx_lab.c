@@ -137,6 +137,20 @@ static void draw(void *ctx) {
     glFinish();
 }
 
+// Pixels that geometry covers: what plain forward shades, once a light.
+static uint32_t covered_pixels(gfx_device *device) {
+    uint32_t width, height, covered = 0;
+    gfx_device_size(device, &width, &height);
+    float *depth = core_alloc((size_t)width * height * sizeof *depth);
+    if (gfx_device_read_depth(device, depth)) {
+        for (size_t i = 0; i < (size_t)width * height; ++i) {
+            covered += depth[i] > 0.0f;
+        }
+    }
+    core_free(depth);
+    return covered;
+}
+
 static bool run_frame(const core_lab_case *c, core_json *out) {
     core_vfs *vfs = core_vfs_create();
     gfx_device_desc desc = gfx_device_desc_default();
@@ -157,6 +171,7 @@ static bool run_frame(const core_lab_case *c, core_json *out) {
         }
         core_json_string(out, "device", gfx_device_name(r.device));
         core_json_int(out, "light_refs", r.world->stats.light_refs);
+        core_json_int(out, "covered_pixels", covered_pixels(r.device));
     } else {
         r.ok = false;
     }
