@@ -152,6 +152,12 @@ struct gfx_material_block {
     GFX_VEC4(params);            // roughness, normal scale, occlusion strength, alpha cut-off
 };
 
+struct gfx_line_block {
+    GFX_VEC4(from);  // world, m; width in pixels
+    GFX_VEC4(to);    // world, m; 1: not hidden by anything
+    GFX_VEC4(color); // linear, straight alpha
+};
+
 struct gfx_quad_block {
     GFX_VEC4(place); // xy: first corner in pixels, origin top left; radius of the corners; border
     GFX_VEC4(axes);  // its two edges, pixels

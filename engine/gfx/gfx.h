@@ -159,6 +159,27 @@ void gfx_camera_ray(const gfx_camera *camera, float width, float height, float x
 // Where a point is in the picture: pixels, and its distance along the view (m, negative behind).
 core_vec3 gfx_camera_project(const gfx_camera *camera, float width, float height, core_vec3 point);
 
+// ---- lines in the world, for the next frame ----
+// Forgotten by gfx_world_begin_frame, as 2D is.
+typedef struct gfx_pen {
+    float color[4]; // linear, straight alpha
+    float width;    // pixels, 0.5..64
+    bool on_top;    // seen through everything
+} gfx_pen;
+gfx_pen gfx_pen_default(void); // white, 1.5 pixels
+void gfx_draw_line(gfx_world *world, core_vec3 a, core_vec3 b, const gfx_pen *pen);
+void gfx_draw_path(gfx_world *world, const core_vec3 *point, uint32_t count, const gfx_pen *pen);
+// rotation zero: identity.
+void gfx_draw_box(gfx_world *world, core_vec3 center, core_quat rotation, core_vec3 half,
+                  const gfx_pen *pen);
+void gfx_draw_sphere(gfx_world *world, core_vec3 center, float radius, const gfx_pen *pen);
+// a, b: centres of the ends.
+void gfx_draw_capsule(gfx_world *world, core_vec3 a, core_vec3 b, float radius, const gfx_pen *pen);
+void gfx_draw_arrow(gfx_world *world, core_vec3 a, core_vec3 b, const gfx_pen *pen);
+// Level square of size x size metres, in cells x cells.
+void gfx_draw_grid(gfx_world *world, core_vec3 center, float size, uint32_t cells,
+                   const gfx_pen *pen);
+
 // ---- 2D: drawn over the next frame in call order ----
 // Pixels, origin top left. Colours are sRGB-encoded with straight alpha. Text is UTF-8, y its top,
 // size the height of a line; '\n' starts a line.

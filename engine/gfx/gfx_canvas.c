@@ -133,7 +133,7 @@ bool gfx_clip_pop(gfx_world *world) {
 
 void gfx_world_begin_frame(gfx_world *world) {
     const float all[4] = {-1e9f, -1e9f, 1e9f, 1e9f};
-    world->commands.count = world->text.count = 0;
+    world->commands.count = world->text.count = world->lines.count = 0;
     memcpy(world->clip[0], all, sizeof all);
     world->clips = 0;
 }

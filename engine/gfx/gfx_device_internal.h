@@ -178,6 +178,15 @@ void gfx_cluster_gpu_release(gfx_cluster_gpu *c);
 bool gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *view,
                        gfx_light_upload *out);
 
+// ---- lines in the world (gfx_marks.c) ----
+
+typedef struct gfx_marks {
+    gfx_stream lines;
+} gfx_marks;
+bool gfx_marks_wanted(const gfx_world *world);
+bool gfx_marks_draw(gfx_device *device, gfx_world *world);
+void gfx_marks_release(gfx_marks *marks);
+
 // ---- screen-space quads (gfx_quads.c, gfx_font.c) ----
 
 typedef struct gfx_font gfx_font; // an atlas of glyphs, of any face and size
@@ -268,6 +277,7 @@ struct gfx_device {
     GLuint timer[GFX_FRAMES];
     uint32_t frame; // turn of the streams
     gfx_quads quads;
+    gfx_marks marks;
     gfx_growing places; // of each row's mesh at its level of detail, NULL: not drawn
     uint64_t levels_hash;
     gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists

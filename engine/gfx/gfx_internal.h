@@ -150,6 +150,7 @@ struct gfx_world {
     gfx_environment environment; // panorama: points to panorama_path
     char panorama_path[CORE_NAME_MAX];
     gfx_growing commands, text;
+    gfx_growing lines; // struct gfx_line_block
     gfx_growing faces; // gfx_face
     float clip[GFX_CLIPS + 1][4];
     uint32_t clips;

@@ -1787,6 +1787,88 @@ corsac.ui = {}
 ---@return corsac.Panel panel
 function corsac.ui.newPanel(options) end
 
+---Lines and shapes in the world, for one frame.
+corsac.gfx = {}
+
+---@class corsac.gfx.drawLine.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws a line in the world, in this frame.
+---@param a number[] start
+---@param b number[] end
+---@param pen? corsac.gfx.drawLine.pen how
+function corsac.gfx.drawLine(a, b, pen) end
+
+---@class corsac.gfx.drawArrow.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws an arrow in the world, in this frame.
+---@param a number[] start
+---@param b number[] tip
+---@param pen? corsac.gfx.drawArrow.pen how
+function corsac.gfx.drawArrow(a, b, pen) end
+
+---@class corsac.gfx.drawPath.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws lines from point to point in the world, in this frame.
+---@param points number[] x, y, z of each
+---@param pen? corsac.gfx.drawPath.pen how
+function corsac.gfx.drawPath(points, pen) end
+
+---@class corsac.gfx.drawBox.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws the edges of a box in the world, in this frame.
+---@param center number[]
+---@param size number[] whole edges
+---@param pen? corsac.gfx.drawBox.pen how
+---@param rotation? number[]|corsac.AxisAngle
+function corsac.gfx.drawBox(center, size, pen, rotation) end
+
+---@class corsac.gfx.drawSphere.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws three circles of a sphere in the world, in this frame.
+---@param center number[]
+---@param radius number
+---@param pen? corsac.gfx.drawSphere.pen how
+function corsac.gfx.drawSphere(center, radius, pen) end
+
+---@class corsac.gfx.drawCapsule.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws the outline of a capsule in the world, in this frame.
+---@param a number[] centre of one end
+---@param b number[] centre of the other
+---@param radius number
+---@param pen? corsac.gfx.drawCapsule.pen how
+function corsac.gfx.drawCapsule(a, b, radius, pen) end
+
+---@class corsac.gfx.drawGrid.pen
+---@field color? number[] linear
+---@field width? number pixels
+---@field onTop? boolean seen through everything
+
+---Draws a level grid in the world, in this frame.
+---@param center number[]
+---@param size number whole edge
+---@param cells integer along an edge
+---@param pen? corsac.gfx.drawGrid.pen how
+function corsac.gfx.drawGrid(center, size, cells, pen) end
+
 ---Skeletons, clips and state machines.
 corsac.anim = {}
 

@@ -52,6 +52,12 @@ class GfxScenes(SceneCase):
     def test_soft(self):
         self.golden("soft")
 
+    def test_marks(self):
+        self.golden("marks")
+
+    def test_menu(self):
+        self.golden("menu", "--size", "480x480", "--steps", 12, "--set", "bot=true")
+
     def test_forward_and_clustered_give_one_picture(self):
         args = ("--steps", 2, "--set", "n=200", "--set")
         forward = self.shot("lights", "forward", *args, "method=forward")
