@@ -124,7 +124,7 @@ class Tune(SceneCase):
         efforts = []
         for bound in ("user.sag_mm<=50", "user.sag_mm<=0.8"):
             self.assert_exit(self.tune(ROOT / "scripts/lab/stack.lua", "--steps", 180, "--error", bound), 0)
-            efforts.append(json.loads((self.dir / "settings.json").read_text())["settings"].get("phys.substeps", 4))
+            efforts.append(json.loads((self.dir / "settings.json").read_text())["settings"].get("phys.substeps", 99))
         self.assertLess(*efforts)
 
     def test_it_refuses_what_nothing_keeps(self):

@@ -152,7 +152,12 @@ def main(argv=None):
 
 
 def report(args, rest, bounds, seeds, settings, worst):
+    """The settings that hold against the scene's own, which may hold for less."""
     mine, default = cost_of(args, rest, settings, seeds[0]), cost_of(args, rest, {}, seeds[0])
+    if mine and default and default < mine:
+        why, own = try_settings(args, rest, bounds, seeds, {})
+        print(f"  {'out ' if why else 'HOLD'}  {'the scene as it is':60} {why or ''}")
+        settings, worst, mine = (settings, worst, mine) if why else ({}, own, default)
     data = {"scene": args.scene, "bounds": [f"{n}{op}{v:g}" for n, op, v in bounds], "seeds": seeds,
             "settings": {("phys.substeps" if k == "substeps" else k): v for k, v in settings.items()},
             "error": worst, "cost_ms_per_step": mine, "default_ms_per_step": default, "run": words_of(settings)}
@@ -160,10 +165,12 @@ def report(args, rest, bounds, seeds, settings, worst):
     args.out.write_text(json.dumps(data, indent=1) + "\n")
     for name, value in worst.items():
         print(f"{name}: {value:.4g} at worst over {len(seeds)} seeds")
-    if mine and default:
+    if not settings:
+        print(f"cost: {mine:.4g} ms a step; nothing that keeps the bounds costs less than the scene as it is")
+    elif mine and default:
         print(f"cost: {mine:.4g} ms a step, {100 * (1 - mine / default):.0f} % less than the default's {default:.4g}"
               if mine <= default else f"cost: {mine:.4g} ms a step, {mine / default:.2f} times the default's {default:.4g}")
-    print(f"{args.out}: corsac run {args.scene} {words_of(settings)}")
+    print(f"{args.out}: corsac run {args.scene} {words_of(settings)}".rstrip())
     return 0
 
 
