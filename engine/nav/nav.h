@@ -184,6 +184,8 @@ bool nav_grid_search(nav_world *world, nav_grid grid, nav_grid_method method, na
 // storeys may lie above one another. Searches give the shortest way for the middle of the agent,
 // measured on the ground plane, straight across the surface from corner to corner.
 typedef core_handle nav_mesh;
+#define NAV_AREAS       32u  // kinds of ground; area[] of a soup, 0 where it has none
+#define NAV_AREA_CLOSED 255u // nobody walks there
 
 typedef struct nav_mesh_desc {
     float cell_size;    // m, default 0.3: the surface is this exact sideways, and exact in height
@@ -191,13 +193,42 @@ typedef struct nav_mesh_desc {
     float agent_height; // m, default 1.8: headroom
     float max_climb;    // m, default 0.4: the highest step
     float max_slope;    // rad from level, default 0.79 (45 degrees); 0..1.5
+    // m; 0: none. Instead of cell_size: all level ground further than agent_radius + max_error from
+    // walls and ledges belongs to the surface, nothing nearer than agent_radius does.
+    float max_error;
+    // Side of a tile in cells, 8..1024; 0: one tile, that no later change can renew. A change makes
+    // only its tiles anew; they cost searches over wide ground some time (docs/navigation.md).
+    uint32_t tile_cells;
+    // With tiles: what the surface may ever cover (height does not count); equal: the soup's
+    // bounds.
+    core_aabb bounds;
+    uint32_t tiles_per_step; // made anew in a step at most, default 4
     uint32_t cookie;
 } nav_mesh_desc;
 nav_mesh_desc nav_mesh_desc_default(void);
 // From a triangle soup (copied, counter-clockwise seen from above is up). Null + core_fail for bad
 // descriptions, vertices that are not finite, indices out of range, and more than 2^26 cells.
-// Degenerate triangles are left out. A soup without walkable ground gives an empty mesh.
+// Degenerate triangles are left out. A soup without walkable ground gives an empty mesh. The inside
+// of closed shapes is solid; ground without a lower side is a sheet.
 nav_mesh nav_mesh_build(nav_world *world, const core_soup_data *soup, const nav_mesh_desc *desc);
+// ---- changes of a surface with tiles ----
+// It is made from pieces: triangles under a key. nav_mesh_build's soup is piece 0. A change is seen
+// at once by nav_mesh_update, else nav_world_step makes tiles_per_step tiles anew in each step:
+// which ones does not depend on time or threads, and when none waits the surface has the same bits
+// as one that was built in a single go. Paths are planned anew.
+
+// Puts triangles in the place of those under `key`; NULL or none: removes them. False + core_fail
+// for surfaces without tiles and soups that nav_mesh_build would refuse.
+bool nav_mesh_put(nav_world *world, nav_mesh mesh, uint64_t key, const core_soup_data *soup);
+// Ground inside a box gets an area (0..NAV_AREAS-1, NAV_AREA_CLOSED: nobody walks there); where
+// marks overlap, that of the largest key. NULL: removes the mark. Keys are those of pieces, too.
+bool nav_mesh_mark(nav_world *world, nav_mesh mesh, uint64_t key, const core_aabb *box,
+                   uint8_t area);
+bool nav_mesh_update(nav_world *world, nav_mesh mesh);            // all that waits, now
+uint32_t nav_mesh_waiting(const nav_world *world, nav_mesh mesh); // tiles to be made anew
+// Of the spans, their heights, areas and links: equal for equal surfaces.
+uint64_t nav_mesh_hash(const nav_world *world, nav_mesh mesh);
+
 // From free cells of a flat map: cell (x, y) covers [x, x+1] by [y, y+1] times cell_size on the
 // ground plane (x, z). blocked[width*height], 0 free.
 nav_mesh nav_mesh_from_cells(nav_world *world, uint32_t width, uint32_t height,

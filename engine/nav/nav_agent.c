@@ -123,6 +123,7 @@ static bool set_out(nav_world *w, uint32_t row, nav_path path, core_vec3 goal) {
         return false;
     }
     a->path[row] = path;
+    w->path.head[core_columns_row(&w->path.set, path)].led = true;
     a->gx[row] = goal.x, a->gy[row] = goal.y, a->gz[row] = goal.z;
     a->plans[row] = 0; // corners are set in the next step
     anchor(a, row);
@@ -379,14 +380,31 @@ static void note_progress(nav_world *w, uint32_t row, float dt) {
     }
 }
 
-// Brings the path up to date with graph and agent. False when there is none to walk.
+// Plans the ways of those whose ground has changed, from where they are now: a fixed number in a
+// step, in turns.
+static void plan_anew(nav_world *w) {
+    nav_agents *a = &w->agent;
+    uint32_t count = core_columns_count(&a->set);
+    uint32_t first = w->next_agent < count ? w->next_agent : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t row = (first + i) % count;
+        uint32_t path = core_columns_row(&w->path.set, a->path[row]);
+        if (path != CORE_NO_ROW && nav_path_outdated(w, path)) {
+            w->next_agent = row;
+            if (w->plans_left == 0) {
+                return;
+            }
+            w->plans_left--;
+            nav_path_set(w, a->path[row], place(a, row), goal_of(a, row));
+        }
+    }
+}
+
+// Brings the path up to date with its ground. False when there is none to walk.
 static bool keep_path(nav_world *w, uint32_t row, uint32_t path) {
     nav_agents *a = &w->agent;
     nav_path_head *p = &w->path.head[path];
-    if (nav_path_outdated(w, path)) {
-        nav_path_set(w, a->path[row], place(a, row), goal_of(a, row));
-    }
-    nav_path_refresh(w, path);
+    nav_path_check(w, path);
     if (a->plans[row] != p->plans) {
         take_path(w, row, path);
     }
@@ -492,6 +510,7 @@ static void keep_on_surface(nav_world *w, uint32_t row) {
 void nav_agents_step(nav_world *w, float dt) {
     nav_agents *a = &w->agent;
     uint32_t count = core_columns_count(&a->set);
+    plan_anew(w);
     for (uint32_t row = 0; row < count; row++) {
         steer(w, row, dt);
     }

@@ -35,7 +35,7 @@ static point corner(const nav_mesh_data *m, uint32_t edge) {
     return (point){m->edge[edge].x, m->edge[edge].z};
 }
 static uint32_t next_edge(const nav_mesh_data *m, uint32_t polygon, uint32_t edge) {
-    return edge + 1 == m->edge_first[polygon + 1] ? m->edge_first[polygon] : edge + 1;
+    return edge + 1 == m->polygon.edges[polygon].end ? m->polygon.edges[polygon].first : edge + 1;
 }
 
 // ---- open list: binary heap of views by f; of equals the larger g, then the younger ----
@@ -168,7 +168,7 @@ static void add_view(search *s, uint32_t edge, uint32_t polygon, point p, point 
     v.left_turn = q_bends ? at_q : NAV_NONE;
     // The edge over which it is entered: the one of the other polygon that comes back.
     v.entered = NAV_NONE;
-    for (uint32_t e = m->edge_first[beyond]; e < m->edge_first[beyond + 1]; e++) {
+    for (uint32_t e = m->polygon.edges[beyond].first; e < m->polygon.edges[beyond].end; e++) {
         point c = corner(m, e), d = corner(m, next_edge(m, beyond, e));
         if (m->edge[e].beyond == polygon && c.x == b.x && c.z == b.z && d.x == a.x && d.z == a.z) {
             v.entered = e;
@@ -182,7 +182,8 @@ static void add_view(search *s, uint32_t edge, uint32_t polygon, point p, point 
 static void add_all(search *s, const nav_view *v, point root, uint32_t turn, double g,
                     uint32_t parent) {
     const nav_mesh_data *m = s->m;
-    for (uint32_t e = m->edge_first[v->polygon]; e < m->edge_first[v->polygon + 1]; e++) {
+    nav_range edges = m->polygon.edges[v->polygon];
+    for (uint32_t e = edges.first; e < edges.end; e++) {
         if (e != v->entered) {
             add_view(s, e, v->polygon, corner(m, e), corner(m, next_edge(m, v->polygon, e)), root,
                      turn, g, parent);
@@ -291,7 +292,7 @@ uint32_t nav_mesh_any_angle(const nav_mesh_data *m, nav_view_scratch *scratch, n
                             uint32_t start_polygon, nav_point goal, uint32_t goal_polygon,
                             uint32_t *expanded) {
     search s = {m, scratch, goal, goal_polygon};
-    begin(scratch, m->turn_count);
+    begin(scratch, m->turn_blocks.end);
     nav_view all = {.root = start,
                     .root_turn = NAV_NONE,
                     .polygon = start_polygon,

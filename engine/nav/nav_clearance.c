@@ -1,59 +1,108 @@
 // From triangles to places to stand, second half: tops of columns with headroom become spans, spans
 // that one step joins are linked, and those nearer to a border than the agent's radius are dropped.
-#include "nav/nav_field.h"
+// A tile is looked at with a margin as wide as borders reach, so that what is kept of it does not
+// depend on where tiles end.
+#include <string.h>
 
-typedef struct draft {
+#include "nav/nav_internal.h"
+
+typedef struct work {
+    const nav_mesh_data *mesh;
     const nav_field *field;
-    const nav_mesh_desc *desc;
-    nav_spans span;
-    float *ceiling; // [count] m
-    uint8_t *drop;  // [count]
-} draft;
+    nav_draft *d;
+    nav_tile_scratch *scratch;
+} work;
 
 static const int32_t step_x[4] = {1, 0, -1, 0}, step_z[4] = {0, 1, 0, -1};
 
-// Tops that are level enough and have room above. Counts only when `write` is false.
-static uint32_t collect(draft *d, bool write) {
-    const nav_field *f = d->field;
-    uint32_t n = 0;
-    for (uint32_t cell = 0; cell < f->width * f->depth; cell++) {
-        if (write) {
-            d->span.cell[cell] = n;
+// ---- places ----
+
+static void fit_spans(nav_draft *d, uint32_t count) {
+    size_t n = (size_t)count + 1;
+    uint8_t *at = nav_buffer_fit(&d->spans, n * (9 * sizeof(uint32_t) + 2));
+    d->link = (uint32_t(*)[4])at, at += n * sizeof *d->link;
+    d->x = (uint32_t *)at, at += n * sizeof *d->x;
+    d->z = (uint32_t *)at, at += n * sizeof *d->z;
+    d->number = (uint32_t *)at, at += n * sizeof *d->number;
+    d->y = (float *)at, at += n * sizeof *d->y;
+    d->ceiling = (float *)at, at += n * sizeof *d->ceiling;
+    d->area = at, at += n;
+    d->drop = at;
+}
+
+// Area of a place: that of the last mark it lies in, or of the ground.
+static uint8_t area_at(const work *k, uint32_t x, uint32_t z, float y, uint8_t ground) {
+    const nav_mesh_data *m = k->mesh;
+    float px = m->origin.x + ((float)(k->d->window.x + x) + 0.5f) * m->cell_size;
+    float pz = m->origin.z + ((float)(k->d->window.z + z) + 0.5f) * m->cell_size;
+    uint8_t area = ground;
+    for (uint32_t i = 0; i < m->piece_count; i++) {
+        const nav_piece *p = m->piece[i];
+        if (p->mark && px >= p->box.min.x && px <= p->box.max.x && pz >= p->box.min.z &&
+            pz <= p->box.max.z && y >= p->box.min.y && y <= p->box.max.y) {
+            area = p->area;
         }
+    }
+    return area;
+}
+
+static bool has_marks(const nav_mesh_data *m) {
+    for (uint32_t i = 0; i < m->piece_count; i++) {
+        if (m->piece[i]->mark) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Tops that are level enough, have room above and are not closed by a mark.
+static void collect(work *k) {
+    const nav_field *f = k->field;
+    nav_draft *d = k->d;
+    uint32_t cells = d->window.width * d->window.depth;
+    bool marks = has_marks(k->mesh);
+    d->cell = nav_buffer_fit(&d->cells, ((size_t)cells + 1) * sizeof *d->cell);
+    fit_spans(d, f->first[cells]);
+    d->count = 0;
+    for (uint32_t cell = 0; cell < cells; cell++) {
+        d->cell[cell] = d->count;
+        uint32_t x = cell % d->window.width, z = cell / d->window.width;
         for (uint32_t i = f->first[cell]; i < f->first[cell + 1]; i++) {
-            float ceiling = i + 1 < f->first[cell + 1] ? f->solid[i + 1].low : __FLT_MAX__;
-            if (!f->solid[i].walkable || ceiling - f->solid[i].stand < d->desc->agent_height) {
+            const nav_solid *top = &f->solid[i];
+            float ceiling = i + 1 < f->first[cell + 1] ? top[1].low : __FLT_MAX__;
+            bool many = d->count - d->cell[cell] >= UINT16_MAX;
+            if (!top->walkable || many || ceiling - top->stand < k->mesh->desc.agent_height) {
                 continue;
             }
-            if (write) {
-                d->span.x[n] = cell % f->width, d->span.z[n] = cell / f->width;
-                d->span.y[n] = f->solid[i].stand;
-                d->ceiling[n] = ceiling;
+            uint8_t area = marks ? area_at(k, x, z, top->stand, top->area) : top->area;
+            if (area == NAV_AREA_CLOSED) {
+                continue;
             }
-            n++;
+            uint32_t n = d->count++;
+            d->x[n] = x, d->z[n] = z, d->y[n] = top->stand;
+            d->ceiling[n] = ceiling;
+            d->area[n] = area;
+            d->drop[n] = 0;
         }
     }
-    if (write) {
-        d->span.cell[f->width * f->depth] = n;
-    }
-    return n;
+    d->cell[cells] = d->count;
 }
 
 // The span of the next cell that one step reaches with headroom on the way; of several the nearest
 // in height.
-static uint32_t step_to(const draft *d, uint32_t s, int direction) {
-    const nav_spans *sp = &d->span;
-    uint32_t x = sp->x[s] + (uint32_t)step_x[direction], z = sp->z[s] + (uint32_t)step_z[direction];
-    if (x >= sp->width || z >= sp->depth) {
+static uint32_t step_to(const work *k, uint32_t s, int direction) {
+    const nav_draft *d = k->d;
+    uint32_t x = d->x[s] + (uint32_t)step_x[direction], z = d->z[s] + (uint32_t)step_z[direction];
+    if (x >= d->window.width || z >= d->window.depth) {
         return NAV_NONE;
     }
-    size_t cell = (size_t)z * sp->width + x;
+    size_t cell = (size_t)z * d->window.width + x;
     uint32_t best = NAV_NONE;
-    float least = d->desc->max_climb;
-    for (uint32_t t = sp->cell[cell]; t < sp->cell[cell + 1]; t++) {
-        float rise = core_absf(sp->y[t] - sp->y[s]);
-        float room = CORE_MIN(d->ceiling[s], d->ceiling[t]) - CORE_MAX(sp->y[s], sp->y[t]);
-        if (rise <= least && room >= d->desc->agent_height) {
+    float least = k->mesh->desc.max_climb;
+    for (uint32_t t = d->cell[cell]; t < d->cell[cell + 1]; t++) {
+        float rise = core_absf(d->y[t] - d->y[s]);
+        float room = CORE_MIN(d->ceiling[s], d->ceiling[t]) - CORE_MAX(d->y[s], d->y[t]);
+        if (rise <= least && room >= k->mesh->desc.agent_height) {
             least = rise;
             best = t;
         }
@@ -61,30 +110,24 @@ static uint32_t step_to(const draft *d, uint32_t s, int direction) {
     return best;
 }
 
-static void link_spans(draft *d) {
-    nav_spans *sp = &d->span;
-    for (uint32_t s = 0; s < sp->count; s++) {
-        for (int k = 0; k < 4; k++) {
-            sp->link[s][k] = step_to(d, s, k);
+static void link_spans(work *k) {
+    nav_draft *d = k->d;
+    for (uint32_t s = 0; s < d->count; s++) {
+        for (int dir = 0; dir < 4; dir++) {
+            d->link[s][dir] = step_to(k, s, dir);
         }
     }
-    for (uint32_t s = 0; s < sp->count; s++) { // only where both sides agree
-        for (int k = 0; k < 4; k++) {
-            uint32_t t = sp->link[s][k];
-            if (t != NAV_NONE && step_to(d, t, (k + 2) % 4) != s) {
-                sp->link[s][k] = NAV_NONE;
+    for (uint32_t s = 0; s < d->count; s++) { // only where both sides agree
+        for (int dir = 0; dir < 4; dir++) {
+            uint32_t t = d->link[s][dir];
+            if (t != NAV_NONE && step_to(k, t, (dir + 2) % 4) != s) {
+                d->link[s][dir] = NAV_NONE;
             }
         }
     }
 }
 
 // ---- clearance ----
-
-typedef struct flood {
-    uint32_t *queue; // spans
-    uint32_t *seen;  // [count] number of the flood that saw a span
-    uint32_t number;
-} flood;
 
 // Distance between two cells as squares, in cells, squared.
 static double gap_square(uint32_t x, uint32_t z, int64_t ox, int64_t oz) {
@@ -96,88 +139,127 @@ static double gap_square(uint32_t x, uint32_t z, int64_t ox, int64_t oz) {
 
 // Drops what lies nearer than the radius to the closed cell (ox, oz), as far as one can walk there
 // from span s beside it: a wall on another storey is none of its business.
-static void drop_around(draft *d, flood *f, uint32_t s, int64_t ox, int64_t oz) {
-    const nav_spans *sp = &d->span;
-    double radius = (double)d->desc->agent_radius / (double)d->field->cell_size;
-    uint32_t head = 0, tail = 0;
-    f->number++;
-    f->queue[tail++] = s;
-    f->seen[s] = f->number;
+static void drop_around(work *k, uint32_t s, int64_t ox, int64_t oz) {
+    nav_draft *d = k->d;
+    double radius = (double)k->mesh->desc.agent_radius / (double)k->mesh->cell_size;
+    uint32_t *queue = k->scratch->queue.data, *seen = k->scratch->seen.data;
+    uint32_t head = 0, tail = 0, flood = ++k->scratch->flood;
+    queue[tail++] = s;
+    seen[s] = flood;
     while (head < tail) {
-        uint32_t at = f->queue[head++];
+        uint32_t at = queue[head++];
         d->drop[at] = 1;
-        for (int k = 0; k < 4; k++) {
-            uint32_t next = sp->link[at][k];
-            if (next != NAV_NONE && f->seen[next] != f->number &&
-                gap_square(sp->x[next], sp->z[next], ox, oz) < radius * radius - 1e-9) {
-                f->seen[next] = f->number;
-                f->queue[tail++] = next;
+        for (int dir = 0; dir < 4; dir++) {
+            uint32_t next = d->link[at][dir];
+            if (next != NAV_NONE && seen[next] != flood &&
+                gap_square(d->x[next], d->z[next], ox, oz) < radius * radius - 1e-9) {
+                seen[next] = flood;
+                queue[tail++] = next;
             }
         }
     }
 }
 
-static void drop_near_borders(draft *d) {
-    const nav_spans *sp = &d->span;
-    flood f = {.queue = core_alloc((sp->count + 1) * sizeof *f.queue),
-               .seen = core_alloc((sp->count + 1) * sizeof *f.seen)};
-    for (uint32_t s = 0; s < sp->count; s++) {
-        int64_t x = sp->x[s], z = sp->z[s];
-        for (int k = 0; k < 4; k++) {
-            int next = (k + 1) % 4;
-            uint32_t a = sp->link[s][k], b = sp->link[s][next];
+static void drop_near_borders(work *k) {
+    nav_draft *d = k->d;
+    size_t bytes = ((size_t)d->count + 1) * sizeof(uint32_t);
+    nav_buffer_fit(&k->scratch->queue, bytes);
+    memset(nav_buffer_fit(&k->scratch->seen, bytes), 0, bytes);
+    k->scratch->flood = 0;
+    for (uint32_t s = 0; s < d->count; s++) {
+        int64_t x = d->x[s], z = d->z[s];
+        for (int dir = 0; dir < 4; dir++) {
+            int next = (dir + 1) % 4;
+            uint32_t a = d->link[s][dir], b = d->link[s][next];
             if (a == NAV_NONE) {
-                drop_around(d, &f, s, x + step_x[k], z + step_z[k]);
+                drop_around(k, s, x + step_x[dir], z + step_z[dir]);
             } else if (b != NAV_NONE &&
-                       (sp->link[a][next] == NAV_NONE || sp->link[b][k] == NAV_NONE)) {
-                drop_around(d, &f, s, x + step_x[k] + step_x[next], z + step_z[k] + step_z[next]);
+                       (d->link[a][next] == NAV_NONE || d->link[b][dir] == NAV_NONE)) {
+                drop_around(k, s, x + step_x[dir] + step_x[next], z + step_z[dir] + step_z[next]);
             }
         }
     }
-    core_free(f.queue);
-    core_free(f.seen);
 }
 
-// What is left, numbered anew in the same order.
-static void keep(const draft *d, nav_spans *out) {
-    const nav_spans *sp = &d->span;
-    uint32_t *number = core_alloc((sp->count + 1) * sizeof *number), n = 0;
-    for (uint32_t s = 0; s < sp->count; s++) {
-        number[s] = d->drop[s] ? NAV_NONE : n++;
+// ---- the tile itself ----
+
+static bool in_core(const nav_draft *d, uint32_t s) {
+    uint32_t x = d->window.x + d->x[s] - d->core.x, z = d->window.z + d->z[s] - d->core.z;
+    return x < d->core.width && z < d->core.depth;
+}
+
+// Numbers what is kept of the tile, and notes links that leave it.
+static void number_spans(nav_draft *d) {
+    d->kept = d->crossings = 0;
+    for (uint32_t s = 0; s < d->count; s++) {
+        d->number[s] = d->drop[s] || !in_core(d, s) ? NAV_NONE : d->kept++;
     }
-    nav_spans_make(out, sp->width, sp->depth, n);
-    uint32_t s = 0, kept = 0;
-    for (uint32_t cell = 0; cell < sp->width * sp->depth; cell++) {
-        out->cell[cell] = kept;
-        for (; s < sp->cell[cell + 1]; s++) {
-            if (d->drop[s]) {
-                continue;
+    for (uint32_t s = 0; s < d->count; s++) {
+        for (uint32_t dir = 0; dir < 4 && d->number[s] != NAV_NONE; dir++) {
+            uint32_t t = d->link[s][dir];
+            if (t != NAV_NONE && !in_core(d, t)) {
+                d->crossing = nav_buffer_fit(&d->crossing_buffer,
+                                             ((size_t)d->crossings + 1) * sizeof *d->crossing);
+                d->crossing[d->crossings++] = (nav_crossing){d->number[s], dir, d->y[t]};
             }
-            out->x[kept] = sp->x[s], out->z[kept] = sp->z[s], out->y[kept] = sp->y[s];
-            for (int k = 0; k < 4; k++) {
-                uint32_t t = sp->link[s][k];
-                out->link[kept][k] = t == NAV_NONE ? NAV_NONE : number[t];
-            }
-            kept++;
         }
     }
-    out->cell[sp->width * sp->depth] = kept;
-    core_free(number);
 }
 
-void nav_field_spans(const nav_field *field, const nav_mesh_desc *desc, nav_spans *out) {
-    draft d = {.field = field, .desc = desc};
-    uint32_t count = collect(&d, false);
-    nav_spans_make(&d.span, field->width, field->depth, count);
-    d.ceiling = core_alloc((count + 1) * sizeof *d.ceiling);
-    d.drop = core_alloc(count + 1);
-    collect(&d, true);
-    link_spans(&d);
-    if (desc->agent_radius > 0.0f) {
-        drop_near_borders(&d);
+static nav_window core_of(const nav_mesh_data *m, uint32_t tile) {
+    uint32_t x = tile % m->tiles_x * m->tile_cells, z = tile / m->tiles_x * m->tile_cells;
+    return (nav_window){x, z, CORE_MIN(m->tile_cells, m->width - x),
+                        CORE_MIN(m->tile_cells, m->depth - z)};
+}
+
+static nav_window with_margin(const nav_mesh_data *m, nav_window core) {
+    uint32_t margin = nav_mesh_margin(m);
+    uint32_t x = core.x > margin ? core.x - margin : 0, z = core.z > margin ? core.z - margin : 0;
+    uint32_t x1 = CORE_MIN(core.x + core.width + margin, m->width);
+    uint32_t z1 = CORE_MIN(core.z + core.depth + margin, m->depth);
+    return (nav_window){x, z, x1 - x, z1 - z};
+}
+
+void nav_draft_make(nav_draft *d, const nav_mesh_data *m, uint32_t tile,
+                    nav_tile_scratch *scratch) {
+    work k = {m, &scratch->field, d, scratch};
+    d->core = core_of(m, tile);
+    d->window = with_margin(m, d->core);
+    nav_field_begin(&scratch->field, m, d->window);
+    d->good = nav_pieces_fill(m, tile, &scratch->field);
+    nav_field_finish(&scratch->field);
+    collect(&k);
+    link_spans(&k);
+    if (m->desc.agent_radius > 0.0f) {
+        drop_near_borders(&k);
     }
-    keep(&d, out);
-    nav_spans_release(&d.span);
-    core_free(d.ceiling);
-    core_free(d.drop);
+    number_spans(d);
+}
+
+void nav_draft_write(nav_draft *d, nav_mesh_data *m, uint32_t tile) {
+    nav_spans *sp = &m->span;
+    uint32_t base = m->tile[tile].span.first;
+    for (uint32_t s = 0; s < d->count; s++) {
+        uint32_t n = d->number[s];
+        if (n == NAV_NONE) {
+            continue;
+        }
+        n += base;
+        sp->x[n] = d->window.x + d->x[s], sp->z[n] = d->window.z + d->z[s];
+        sp->y[n] = d->y[s], sp->area[n] = d->area[s];
+        for (int dir = 0; dir < 4; dir++) {
+            uint32_t t = d->link[s][dir];
+            bool inside = t != NAV_NONE && d->number[t] != NAV_NONE;
+            sp->link[n][dir] = inside ? base + d->number[t] : NAV_NONE;
+        }
+        uint32_t cell = sp->z[n] * m->width + sp->x[n];
+        sp->first[cell] = sp->stack[cell] ? sp->first[cell] : n;
+        sp->stack[cell]++;
+    }
+}
+
+void nav_draft_release(nav_draft *d) {
+    core_free(d->cells.data);
+    core_free(d->spans.data);
+    core_free(d->crossing_buffer.data);
 }

@@ -1,11 +1,13 @@
 // From triangles to places to stand, first half: every triangle is clipped to the columns of cells
 // it crosses, and what a column holds is merged into solid intervals of height. Heights stay exact;
 // only sideways is the world cut into cells.
-#include "nav/nav_field.h"
-
+//
+// What a cell gets from a triangle does not depend on the window that is looked at: its part is cut
+// from the triangle itself. So a tile made alone has the same bits as in a whole surface.
 #include <string.h>
 
-#define MOST_CELLS     (1u << 26)
+#include "nav/nav_internal.h"
+
 #define MOST_FRAGMENTS (1u << 28)
 #define SAME_TOP       0.01f // m: tops so near to each other are one surface
 
@@ -48,133 +50,199 @@ static void bounds(const outline *o, int axis, float *low, float *high) {
     }
 }
 
-typedef struct fragment { // what one triangle leaves in one column
-    uint32_t cell;
+typedef struct fragment {   // what one triangle leaves in one column
+    uint32_t cell;          // of the window
     float low, high, stand; // m; `stand`: height over the middle of the cell
+    float cover;            // m^2 of the cell, > 0 where it faces down, < 0 where it faces up
+    uint32_t piece;
     bool walkable;
+    uint8_t area;
 } fragment;
 
-typedef struct raster {
-    nav_field *field;
-    fragment *item;
-    uint32_t count, room;
-} raster;
-
-static bool emit(raster *r, fragment f) {
-    if (r->count == r->room) {
-        if (r->room >= MOST_FRAGMENTS) {
-            return core_fail("nav_mesh_build: the triangles cross more than %u cells; use larger "
-                             "cells",
-                             MOST_FRAGMENTS);
-        }
-        uint32_t wanted = CORE_MAX(r->room * 2, 4096u);
-        r->item = core_realloc(r->item, r->room * sizeof *r->item, wanted * sizeof *r->item);
-        r->room = wanted;
+static bool emit(nav_field *f, const fragment *item) {
+    if (f->fragments >= MOST_FRAGMENTS) {
+        return core_fail("nav_mesh_build: the triangles cross more than %u cells; use larger cells",
+                         MOST_FRAGMENTS);
     }
-    r->item[r->count++] = f;
+    if ((f->fragments + 1) * sizeof *item > f->fragment.bytes) {
+        nav_buffer_fit(&f->fragment, (f->fragments + 4096) * sizeof *item);
+    }
+    ((fragment *)f->fragment.data)[f->fragments++] = *item;
     return true;
 }
 
 typedef struct face {
     core_vec3 a, normal; // not unit
     bool walkable;
+    uint8_t area;
 } face;
 
-static uint32_t cell_index(float at, float origin, float size, uint32_t most) {
-    float cell = (at - origin) / size;
-    return cell <= 0.0f ? 0 : CORE_MIN((uint32_t)cell, most - 1);
+typedef struct range { // of cells, both included
+    int64_t low, high;
+} range;
+// Cells that an outline crosses along an axis. The first and the last take what rounding leaves
+// beyond them.
+static range cells_of(const outline *o, int axis, float origin, float size) {
+    float low, high;
+    bounds(o, axis, &low, &high);
+    return (range){(int64_t)core_floor((double)((low - origin) / size)),
+                   (int64_t)core_floor((double)((high - origin) / size))};
 }
 
-// One row of cells: `strip` is the triangle's part in it.
-static bool raster_row(raster *r, const face *f, outline *strip, uint32_t z) {
-    const nav_field *field = r->field;
-    float low, high, size = field->cell_size;
-    bounds(strip, 0, &low, &high);
-    uint32_t x0 = cell_index(low, field->origin.x, size, field->width);
-    uint32_t x1 = cell_index(high, field->origin.x, size, field->width);
-    for (uint32_t x = x0; x <= x1; x++) {
-        outline piece, rest;
-        cut(strip, 0, field->origin.x + (float)(x + 1) * size, &piece, &rest);
-        *strip = rest;
-        outline *part = x == x1 && piece.count < 3 ? &rest : &piece;
-        if (part->count >= 3) {
-            fragment out = {.cell = z * field->width + x, .walkable = f->walkable};
-            bounds(part, 1, &out.low, &out.high);
-            out.stand = out.high;
-            if (f->walkable) {
-                float dx = field->origin.x + ((float)x + 0.5f) * size - f->a.x;
-                float dz = field->origin.z + ((float)z + 0.5f) * size - f->a.z;
-                float y = f->a.y - (f->normal.x * dx + f->normal.z * dz) / f->normal.y;
-                out.stand = CORE_CLAMP(y, out.low, out.high);
-            }
-            if (!emit(r, out)) {
-                return false;
-            }
-        }
+// The part of an outline in one of the rows or columns of cells that it crosses.
+static void slice(const outline *whole, int axis, range all, int64_t at, float origin, float size,
+                  outline *out) {
+    outline rest;
+    *out = *whole;
+    if (at > all.low) {
+        outline in = *out;
+        cut(&in, axis, origin + (float)at * size, &rest, out);
     }
-    return true;
+    if (at < all.high) {
+        outline in = *out;
+        cut(&in, axis, origin + (float)(at + 1) * size, out, &rest);
+    }
 }
 
-static bool raster_triangle(raster *r, const core_vec3 *corner, float least_normal_y) {
-    face f = {.a = corner[0]};
-    f.normal = core_v3_cross(core_v3_sub(corner[1], corner[0]), core_v3_sub(corner[2], corner[0]));
+static float cover_of(const outline *o, float facing) {
+    float twice = 0.0f;
+    for (int i = 0; i < o->count; i++) {
+        const float *a = o->p[i], *b = o->p[(i + 1) % o->count];
+        twice +=
+            (a[0] - o->p[0][0]) * (b[2] - o->p[0][2]) - (a[2] - o->p[0][2]) * (b[0] - o->p[0][0]);
+    }
+    twice = core_absf(twice);
+    return facing > 0.0f ? -0.5f * twice : facing < 0.0f ? 0.5f * twice : 0.0f;
+}
+
+static fragment fragment_of(const nav_field *field, const face *f, const outline *part, int64_t x,
+                            int64_t z) {
+    const nav_window *w = &field->window;
+    fragment out = {.cell = (uint32_t)(z - w->z) * w->width + (uint32_t)(x - w->x),
+                    .cover = cover_of(part, f->normal.y),
+                    .piece = field->piece,
+                    .walkable = f->walkable,
+                    .area = f->area};
+    bounds(part, 1, &out.low, &out.high);
+    out.stand = out.high;
+    if (f->walkable) {
+        float dx = field->origin.x + ((float)x + 0.5f) * field->cell_size - f->a.x;
+        float dz = field->origin.z + ((float)z + 0.5f) * field->cell_size - f->a.z;
+        float y = f->a.y - (f->normal.x * dx + f->normal.z * dz) / f->normal.y;
+        out.stand = CORE_CLAMP(y, out.low, out.high);
+    }
+    return out;
+}
+
+static range within(range cells, uint32_t first, uint32_t count) {
+    return (range){CORE_MAX(cells.low, (int64_t)first),
+                   CORE_MIN(cells.high, (int64_t)first + count - 1)};
+}
+
+bool nav_field_add(nav_field *field, const nav_triangle *t) {
+    face f = {.a = t->corner[0], .area = t->area};
+    f.normal = core_v3_cross(core_v3_sub(t->corner[1], t->corner[0]),
+                             core_v3_sub(t->corner[2], t->corner[0]));
     float length = core_v3_length(f.normal);
     if (!(length > 0.0f)) {
         return true; // no area
     }
-    f.walkable = f.normal.y >= least_normal_y * length && f.normal.y > 0.0f;
-    outline left = {.count = 3};
-    for (int i = 0; i < 3; i++) {
-        memcpy(left.p[i], &corner[i], sizeof left.p[i]);
-    }
-    const nav_field *field = r->field;
-    float low, high;
-    bounds(&left, 2, &low, &high);
-    uint32_t z0 = cell_index(low, field->origin.z, field->cell_size, field->depth);
-    uint32_t z1 = cell_index(high, field->origin.z, field->cell_size, field->depth);
-    for (uint32_t z = z0; z <= z1; z++) {
-        outline strip, rest;
-        cut(&left, 2, field->origin.z + (float)(z + 1) * field->cell_size, &strip, &rest);
-        left = rest;
-        outline *part = z == z1 && strip.count < 3 ? &rest : &strip;
-        if (part->count >= 3 && !raster_row(r, &f, part, z)) {
-            return false;
+    f.walkable = f.normal.y >= field->least_normal_y * length && f.normal.y > 0.0f;
+    outline all = {.count = 3}, strip, part;
+    memcpy(all.p, t->corner, sizeof t->corner);
+    float size = field->cell_size;
+    range rows = cells_of(&all, 2, field->origin.z, size);
+    range seen = within(rows, field->window.z, field->window.depth);
+    for (int64_t z = seen.low; z <= seen.high; z++) {
+        slice(&all, 2, rows, z, field->origin.z, size, &strip);
+        if (strip.count < 3) {
+            continue;
+        }
+        range columns = cells_of(&strip, 0, field->origin.x, size);
+        range here = within(columns, field->window.x, field->window.width);
+        for (int64_t x = here.low; x <= here.high; x++) {
+            slice(&strip, 0, columns, x, field->origin.x, size, &part);
+            if (part.count >= 3) {
+                fragment out = fragment_of(field, &f, &part, x, z);
+                if (!emit(field, &out)) {
+                    return false;
+                }
+            }
         }
     }
     return true;
+}
+
+void nav_field_begin(nav_field *field, const nav_mesh_data *m, nav_window window) {
+    field->window = window;
+    field->cell_size = m->cell_size;
+    field->origin = m->origin;
+    field->least_normal_y = core_cosf(m->desc.max_slope);
+    field->fragments = 0;
 }
 
 // ---- columns ----
 
 // Fragments sorted by cell: a counting sort keeps the order of triangles, so ties are broken alike
 // on every machine.
-static fragment *sort_by_cell(raster *r, uint32_t cells, uint32_t *start) {
-    for (uint32_t i = 0; i < r->count; i++) {
-        start[r->item[i].cell + 1]++;
+static fragment *sort_by_cell(nav_field *f, uint32_t cells, uint32_t *start) {
+    fragment *item = f->fragment.data;
+    memset(start, 0, ((size_t)cells + 1) * sizeof *start);
+    for (uint32_t i = 0; i < f->fragments; i++) {
+        start[item[i].cell + 1]++;
     }
     for (uint32_t c = 0; c < cells; c++) {
         start[c + 1] += start[c];
     }
-    fragment *sorted = core_alloc((r->count + 1) * sizeof *sorted);
-    for (uint32_t i = r->count; i-- > 0;) {
-        sorted[--start[r->item[i].cell + 1]] = r->item[i];
+    fragment *sorted = nav_buffer_fit(&f->sorted, ((size_t)f->fragments + 1) * sizeof *sorted);
+    for (uint32_t i = f->fragments; i-- > 0;) {
+        sorted[--start[item[i].cell + 1]] = item[i];
     }
     // The decrements turned every end into its begin: move them back by one.
     for (uint32_t c = 0; c < cells; c++) {
         start[c] = start[c + 1];
     }
-    start[cells] = r->count;
+    start[cells] = f->fragments;
     return sorted;
+}
+
+// At one height what faces up comes first.
+static bool lower(const fragment *a, const fragment *b) {
+    return a->low != b->low ? a->low < b->low : a->cover < b->cover;
 }
 
 static void sort_by_height(fragment *f, uint32_t count) {
     for (uint32_t i = 1; i < count; i++) {
         fragment moved = f[i];
         uint32_t k = i;
-        for (; k > 0 && f[k - 1].low > moved.low; k--) {
+        for (; k > 0 && lower(&moved, &f[k - 1]); k--) {
             f[k] = f[k - 1];
         }
         f[k] = moved;
+    }
+}
+
+// Closed shapes are solid: upwards through one piece, what has been entered through faces that look
+// down and not yet left through faces that look up is inside. Sheets (ground without a lower side)
+// have no inside.
+static void fill_piece(fragment *f, uint32_t count, float cell_area) {
+    float inside = 0.0f, bottom = 0.0f;
+    sort_by_height(f, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (f[i].cover > 0.0f && inside <= 1e-3f * cell_area) {
+            bottom = f[i].low;
+        }
+        if (f[i].cover < 0.0f && inside > 1e-3f * cell_area) {
+            f[i].low = CORE_MIN(f[i].low, bottom);
+        }
+        inside = CORE_MAX(inside + f[i].cover, 0.0f);
+    }
+}
+static void fill_solids(fragment *f, uint32_t count, float cell_area) {
+    for (uint32_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && f[end].piece == f[i].piece; end++) {
+        }
+        fill_piece(f + i, end - i, cell_area);
     }
 }
 
@@ -184,7 +252,7 @@ static uint32_t merge_column(fragment *f, uint32_t count, nav_solid *out) {
     uint32_t n = 0;
     sort_by_height(f, count);
     for (uint32_t i = 0; i < count; i++) {
-        nav_solid next = {f[i].low, f[i].high, f[i].stand, f[i].walkable};
+        nav_solid next = {f[i].low, f[i].high, f[i].stand, f[i].walkable, f[i].area};
         nav_solid *last = n ? &out[n - 1] : NULL;
         if (!last || next.low > last->high + SAME_TOP) {
             out[n++] = next;
@@ -194,86 +262,33 @@ static uint32_t merge_column(fragment *f, uint32_t count, nav_solid *out) {
         if (higher || (level && next.walkable && !last->walkable)) {
             last->stand = next.stand;
             last->walkable = next.walkable;
+            last->area = next.area;
         }
         last->high = CORE_MAX(last->high, next.high);
     }
     return n;
 }
 
-static void fill_columns(nav_field *field, raster *r) {
-    uint32_t cells = field->width * field->depth;
-    uint32_t *start = core_alloc(((size_t)cells + 1) * sizeof *start);
-    fragment *sorted = sort_by_cell(r, cells, start);
-    field->first = core_alloc(((size_t)cells + 1) * sizeof *field->first);
-    field->solid = core_alloc(((size_t)r->count + 1) * sizeof *field->solid);
+void nav_field_finish(nav_field *f) {
+    uint32_t cells = f->window.width * f->window.depth;
+    uint32_t *start = nav_buffer_fit(&f->start, ((size_t)cells + 1) * sizeof *start);
+    fragment *sorted = sort_by_cell(f, cells, start);
+    f->first = nav_buffer_fit(&f->first_buffer, ((size_t)cells + 1) * sizeof *f->first);
+    f->solid = nav_buffer_fit(&f->solid_buffer, ((size_t)f->fragments + 1) * sizeof *f->solid);
     uint32_t n = 0;
     for (uint32_t c = 0; c < cells; c++) {
-        field->first[c] = n;
-        n += merge_column(sorted + start[c], start[c + 1] - start[c], field->solid + n);
+        f->first[c] = n;
+        uint32_t count = start[c + 1] - start[c];
+        fill_solids(sorted + start[c], count, f->cell_size * f->cell_size);
+        n += merge_column(sorted + start[c], count, f->solid + n);
     }
-    field->first[cells] = n;
-    core_free(sorted);
-    core_free(start);
+    f->first[cells] = n;
 }
 
-static bool measure(nav_field *field, const core_soup_data *soup) {
-    core_vec3 low = {__FLT_MAX__, 0, __FLT_MAX__}, high = {-__FLT_MAX__, 0, -__FLT_MAX__};
-    for (uint32_t v = 0; v < soup->vertex_count; v++) {
-        const float *p = soup->position + 3 * (size_t)v;
-        if (!(core_absf(p[0]) <= 1e6f && core_absf(p[1]) <= 1e6f && core_absf(p[2]) <= 1e6f)) {
-            return core_fail("nav_mesh_build: vertex %u is (%g, %g, %g), expected numbers up to a "
-                             "million",
-                             v, (double)p[0], (double)p[1], (double)p[2]);
-        }
-        low.x = CORE_MIN(low.x, p[0]), high.x = CORE_MAX(high.x, p[0]);
-        low.z = CORE_MIN(low.z, p[2]), high.z = CORE_MAX(high.z, p[2]);
+void nav_field_release(nav_field *f) {
+    nav_buffer *own[] = {&f->fragment, &f->sorted, &f->start, &f->first_buffer, &f->solid_buffer};
+    for (size_t i = 0; i < CORE_COUNT_OF(own); i++) {
+        core_free(own[i]->data);
     }
-    if (soup->vertex_count == 0) {
-        low = high = (core_vec3){0, 0, 0};
-    }
-    double width = ((double)high.x - low.x) / field->cell_size + 1.0;
-    double depth = ((double)high.z - low.z) / field->cell_size + 1.0;
-    if (width * depth > MOST_CELLS) {
-        return core_fail("nav_mesh_build: %.0f by %.0f cells of %g m, expected at most %u in all; "
-                         "use larger cells",
-                         width, depth, (double)field->cell_size, MOST_CELLS);
-    }
-    field->origin = low;
-    field->width = (uint32_t)width, field->depth = (uint32_t)depth;
-    return true;
-}
-
-bool nav_field_make(nav_field *field, const core_soup_data *soup, float cell_size,
-                    float max_slope) {
-    *field = (nav_field){.cell_size = cell_size};
-    if (!measure(field, soup)) {
-        return false;
-    }
-    raster r = {.field = field};
-    float least_normal_y = core_cosf(max_slope);
-    bool good = true;
-    for (uint32_t t = 0; good && t < soup->triangle_count; t++) {
-        const uint32_t *index = soup->index + 3 * (size_t)t;
-        core_vec3 corner[3];
-        for (int i = 0; good && i < 3; i++) {
-            good = index[i] < soup->vertex_count ||
-                   core_fail("nav_mesh_build: triangle %u names vertex %u of %u", t, index[i],
-                             soup->vertex_count);
-            if (good) {
-                memcpy(&corner[i], soup->position + 3 * (size_t)index[i], sizeof corner[i]);
-            }
-        }
-        good = good && raster_triangle(&r, corner, least_normal_y);
-    }
-    if (good) {
-        fill_columns(field, &r);
-    }
-    core_free(r.item);
-    return good;
-}
-
-void nav_field_release(nav_field *field) {
-    core_free(field->first);
-    core_free(field->solid);
-    *field = (nav_field){0};
+    *f = (nav_field){0};
 }

@@ -4,6 +4,9 @@
 
 #include "nav/nav.h"
 
+// Paths planned anew in one step, where their ground has changed.
+#define NAV_PLANS_A_STEP 256u
+
 #define NAV_WORLD_COOKIE 0x4e41560au
 #define NAV_GRAPH_COOKIE 0x4e41560bu
 #define NAV_QUERY_COOKIE 0x4e41560cu
@@ -64,6 +67,8 @@ typedef struct nav_path_head {
     core_vec3 start, goal;
     uint32_t status, count, plans;
     uint32_t points_hash; // of the points below, which are no column
+    uint32_t led;         // an agent walks it, and plans it from where it is
+    uint32_t unused;
 } nav_path_head;
 typedef struct nav_path_points {
     core_vec3 *point;
@@ -203,90 +208,7 @@ static inline uint32_t nav_grid_octile(uint32_t x, uint32_t y, uint32_t gx, uint
 }
 
 // ---- walkable surfaces ----
-
-#define NAV_NONE UINT32_MAX
-
-// Open places for an agent: one for each cell and storey, in order of cell (z, then x), then
-// height.
-typedef struct nav_spans {
-    uint32_t width, depth; // cells
-    uint32_t count;
-    uint32_t *cell; // [width*depth + 1] first span of each cell
-    uint32_t *x;    // [count]
-    uint32_t *z;
-    float *y;            // m
-    uint32_t (*link)[4]; // neighbour towards +x, +z, -x, -z; NAV_NONE
-} nav_spans;
-void nav_spans_make(nav_spans *spans, uint32_t width, uint32_t depth, uint32_t count);
-void nav_spans_release(nav_spans *spans);
-
-// A corner of an edge in cells. An edge runs from its corner to the next one's, counter-clockwise
-// with x to the right and z up.
-typedef struct nav_edge {
-    int32_t x, z;
-    uint32_t beyond; // polygon on its other side, NAV_NONE: wall
-    uint32_t turn;   // number of the turning point here, NAV_NONE: no shortest way bends here
-} nav_edge;
-
-typedef struct nav_mesh_data {
-    nav_spans span;
-    uint32_t polygon_count, edge_count, turn_count;
-    uint32_t *polygon;    // [span.count] of each span
-    uint32_t *edge_first; // [polygon_count + 1]
-    nav_edge *edge;
-    float *turn_y;        // [turn_count] m
-    uint8_t *turn_closed; // [turn_count] d: the closed cell there lies between directions d and d+1
-    core_vec3 origin;
-    float cell_size;
-} nav_mesh_data;
-typedef struct nav_mesh_head {
-    uint64_t content; // hash of what it was built from
-} nav_mesh_head;
-#define NAV_MESH_COLUMNS(X)                                                                        \
-    X(nav_mesh_head, head, CORE_COLUMN_STATE)                                                      \
-    X(nav_mesh_data *, data, 0)
-CORE_COLUMNS_DECLARE(nav_meshes, NAV_MESH_COLUMNS)
-
-void nav_mesh_free(nav_mesh_data *mesh);
-nav_mesh nav_mesh_adopt(nav_world *world, nav_mesh_data *mesh, uint64_t content);
-// Cuts the spans into rectangles and finds edges and turning points. Owns the spans then.
-void nav_mesh_assemble(nav_mesh_data *mesh);
-
-// nav_mesh_search with bends kept `clearance` cells (0..1) clear of the corners they go round.
-bool nav_mesh_way(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
-                  double clearance, nav_result *result, core_vec3 *out, uint32_t capacity);
-// Moves a point to the surface when it is at most two cells off. False when there is none so near.
-bool nav_mesh_hold(const nav_world *world, nav_mesh mesh, core_vec3 *point);
-
-// Distances from a point to the surface's border towards +x, +z, -x, -z, m; FLT_MAX where it is
-// further than `range` or the point is off the surface.
-void nav_mesh_room(const nav_world *world, nav_mesh mesh, core_vec3 point, float range,
-                   float out[4]);
-
-typedef struct nav_point { // on the ground plane, in cells
-    double x, z;
-} nav_point;
-// A ray's view: from `root` through the interval left..right of an edge into a polygon.
-typedef struct nav_view {
-    nav_point root, left, right;
-    double g, f; // cost to the root; estimate of the whole
-    uint32_t root_turn, left_turn, right_turn;
-    uint32_t polygon, entered; // edge of the polygon that the interval lies on
-    uint32_t parent;
-} nav_view;
-typedef struct nav_view_scratch {
-    nav_view *view; // [capacity]
-    uint32_t *heap; // [capacity] numbers of views
-    uint32_t capacity, count, open;
-    double *best; // [turns] least cost to a turning point, valid where stamp is the query's
-    uint32_t *stamp;
-    uint32_t turns, query;
-} nav_view_scratch;
-// Views from which the way can be read, last first; NAV_NONE when there is no way.
-uint32_t nav_mesh_any_angle(const nav_mesh_data *mesh, nav_view_scratch *scratch, nav_point start,
-                            uint32_t start_polygon, nav_point goal, uint32_t goal_polygon,
-                            uint32_t *expanded);
-void nav_view_scratch_release(nav_view_scratch *scratch);
+#include "nav/nav_surface.h"
 
 struct nav_world {
     core_jobs *jobs;
@@ -297,10 +219,13 @@ struct nav_world {
     nav_grids grid;
     nav_meshes mesh;
     nav_view_scratch views;
+    nav_builder *builder; // made with the first surface
     nav_scratch scratch;
     nav_crowd crowd;
     nav_grid_scratch *grid_scratch; // made with the first grid
     nav_heuristic heuristic;        // of paths
+    uint32_t plans_left;            // in this step
+    uint32_t next_path, next_agent; // whose turn it is
     float weight;
     bool no_avoidance;
 };
@@ -321,8 +246,9 @@ void nav_grid_scratch_release(nav_world *world);
 // Plans a path on a live graph or mesh (the other null), in the place of `old` when that lives.
 nav_path nav_path_renew(nav_world *world, nav_path old, nav_graph graph, nav_mesh mesh,
                         core_vec3 start, core_vec3 goal);
-bool nav_path_outdated(const nav_world *world, uint32_t row); // its graph has changed
-void nav_path_refresh(nav_world *world, uint32_t row);        // plans when its graph has changed
+bool nav_path_outdated(const nav_world *world, uint32_t row); // its ground has changed
+void nav_path_check(nav_world *world, uint32_t row);          // invalid when its ground is gone
+void nav_paths_refresh(nav_world *world); // plans those whose ground has changed, but agents'
 // nav_avoid.c
 void nav_crowd_avoid(nav_world *world, float dt); // wanted velocities to safe ones
 void nav_crowd_release(nav_crowd *crowd);

@@ -40,6 +40,7 @@ nav_path nav_path_renew(nav_world *w, nav_path old, nav_graph graph, nav_mesh me
         return create(w, head);
     }
     head.plans = w->path.head[row].plans;
+    head.led = w->path.head[row].led;
     w->path.head[row] = head;
     nav_path_update(w, old);
     return old;
@@ -139,6 +140,7 @@ static void plan(nav_world *w, uint32_t row) {
     nav_path_points *points = &w->path.points[row];
     nav_result result = {.status = NAV_NO_PATH};
     if (on_mesh(p)) {
+        p->version = w->mesh.head[core_columns_row(&w->mesh.set, p->mesh)].version;
         plan_on_mesh(w, p, points, &result);
     } else {
         p->version = nav_graph_version(w, p->graph);
@@ -157,18 +159,37 @@ static bool ground_alive(const nav_world *w, const nav_path_head *p) {
 
 bool nav_path_outdated(const nav_world *w, uint32_t row) {
     const nav_path_head *p = &w->path.head[row];
-    return !on_mesh(p) && nav_graph_alive(w, p->graph) &&
-           p->version != nav_graph_version(w, p->graph);
+    if (!ground_alive(w, p)) {
+        return false;
+    }
+    return p->version != (on_mesh(p) ? w->mesh.head[core_columns_row(&w->mesh.set, p->mesh)].version
+                                     : nav_graph_version(w, p->graph));
 }
 
-void nav_path_refresh(nav_world *w, uint32_t row) {
+void nav_path_check(nav_world *w, uint32_t row) {
     nav_path_head *p = &w->path.head[row];
     if (!ground_alive(w, p)) {
         p->plans += p->status != NAV_INVALID;
         p->status = NAV_INVALID;
         p->count = 0;
-    } else if (nav_path_outdated(w, row)) {
-        plan(w, row);
+    }
+}
+
+// From one path on and around, so that each gets its turn where something changes in every step.
+void nav_paths_refresh(nav_world *w) {
+    uint32_t count = core_columns_count(&w->path.set);
+    uint32_t first = w->next_path < count ? w->next_path : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t row = (first + i) % count;
+        nav_path_check(w, row);
+        if (!w->path.head[row].led && nav_path_outdated(w, row)) {
+            w->next_path = row;
+            if (w->plans_left == 0) {
+                return;
+            }
+            w->plans_left--;
+            plan(w, row);
+        }
     }
 }
 
@@ -180,7 +201,7 @@ nav_status nav_path_update(nav_world *w, nav_path path) {
     if (ground_alive(w, &w->path.head[row])) {
         plan(w, row);
     } else {
-        nav_path_refresh(w, row);
+        nav_path_check(w, row);
     }
     return (nav_status)w->path.head[row].status;
 }

@@ -50,6 +50,7 @@ void nav_world_destroy(nav_world *w) {
     for (uint32_t n = core_columns_count(&w->mesh.set); n > 0; n--) {
         nav_mesh_destroy(w, core_columns_handle(&w->mesh.set, n - 1));
     }
+    nav_builder_release(w);
     nav_view_scratch_release(&w->views);
     core_columns_release(&w->mesh.set);
     nav_grid_scratch_release(w);
@@ -67,10 +68,14 @@ bool nav_world_step(nav_world *w, float dt) {
         return core_fail("nav_world_step: dt is %g s, expected 0 < dt <= 1", (double)dt);
     }
     core_stage_begin(w->metrics, CORE_STAGE_NAV);
-    nav_agents_step(w, dt);
-    for (uint32_t row = 0; row < core_columns_count(&w->path.set); row++) {
-        nav_path_refresh(w, row);
+    for (uint32_t row = 0; row < core_columns_count(&w->mesh.set); row++) {
+        if (w->mesh.data[row]->dirty) {
+            nav_mesh_renew(w, row, w->mesh.data[row]->desc.tiles_per_step);
+        }
     }
+    w->plans_left = NAV_PLANS_A_STEP;
+    nav_agents_step(w, dt);
+    nav_paths_refresh(w);
     core_stage_end(w->metrics, CORE_STAGE_NAV);
     return true;
 }
@@ -173,10 +178,7 @@ size_t nav_world_bytes(const nav_world *w) {
     }
     bytes += w->crowd.capacity * 12 * sizeof(float);
     for (uint32_t row = 0; row < core_columns_count(&w->mesh.set); row++) {
-        const nav_mesh_data *m = w->mesh.data[row];
-        bytes += sizeof *m + ((size_t)m->span.width * m->span.depth + 1) * sizeof(uint32_t) +
-                 (size_t)m->span.count * (8 * sizeof(uint32_t)) +
-                 (size_t)m->edge_count * sizeof(nav_edge) + m->turn_count * sizeof(float);
+        bytes += nav_mesh_bytes(w->mesh.data[row]);
     }
     bytes += w->views.capacity * (sizeof(nav_view) + sizeof(uint32_t)) +
              w->views.turns * (sizeof(double) + sizeof(uint32_t));
