@@ -158,10 +158,10 @@ SPHERES := scripts/scenes/spheres.lua --set n=2500
 run: all ## 2,500 falling spheres without a window: table, receipt, out/spheres/{metrics.json,frame.png}
 	@$(OUT)/corsac run $(SPHERES) --headless --steps 600 --receipt \
 	    --metrics out/spheres/metrics.json --shot out/spheres/frame.png
-	@echo "Wrote out/spheres/metrics.json and out/spheres/frame.png. 'make play' opens the same scene in a window."
+	@echo "Wrote out/spheres/metrics.json and out/spheres/frame.png. 'build/corsac run $(SPHERES)' opens the same scene in a window."
 
-play: all ## the same scene in a window
-	@$(OUT)/corsac run $(SPHERES)
+play: all ## the game: a fox, a walled garden, two minutes
+	@$(OUT)/corsac run scripts/game
 
 bench: all ## ms per step for 500 to 10,000 spheres -> out/bench.json
 	@python3 tools/bench.py --corsac $(OUT)/corsac

@@ -107,7 +107,8 @@ bool gfx_quads_draw(gfx_device *d, gfx_world *world) {
     memcpy(gfx_stream_begin(&q->stream, bytes, d->frame), q->quads.data, bytes);
     gfx_stream_bind(&q->stream, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_QUADS, bytes, d->frame);
     glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    // The alpha of the frame stays 1: a picture filed with less would show what is behind it.
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glBindVertexArray(d->empty_vao);
     set_clipping(true);
     bool ok = true;
