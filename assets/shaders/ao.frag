@@ -9,7 +9,9 @@ layout(location = 0) out float o_visibility;
 // Of the two neighbours along an axis the one that lies on the same surface: the nearer in depth.
 vec3 slope(ivec2 at, ivec2 step, vec3 p) {
     vec3 a = p - viewPosition(at - step), b = viewPosition(at + step) - p;
-    return abs(a.z) < abs(b.z) ? a : b;
+    bool first = any(lessThan(at - step, ivec2(0)));
+    bool last = any(greaterThanEqual(at + step, ivec2(u_view.viewport.xy)));
+    return last || (!first && abs(a.z) < abs(b.z)) ? a : b;
 }
 
 float pixelsPerMetre(float depth) {
@@ -18,7 +20,7 @@ float pixelsPerMetre(float depth) {
 }
 
 // Cosine of the horizon along `along` (pixels to the radius), at least `low`.
-float horizon(vec3 p, vec3 v, vec2 along, float low, float shift) {
+float horizon(vec3 p, vec3 v, vec3 normal, vec2 along, float low, float shift) {
     float steps = u_view.ao.w, radius = u_view.ao.y, found = low;
     for (float i = 0.0; i < steps; i += 1.0) {
         float s = (i + shift) / steps;
@@ -33,8 +35,12 @@ float horizon(vec3 p, vec3 v, vec2 along, float low, float shift) {
         }
         vec3 d = viewPosition(at) - p;
         float far = length(d);
-        // What leaves the radius fades from 0.6 of it on, and no step shows at its end.
-        float weight = clamp((radius - far) / (0.4 * radius), 0.0, 1.0);
+        // Texels lie a little beside the slice: only what rises above the surface can occlude it.
+        if (dot(d, normal) <= 0.01 * far) {
+            continue;
+        }
+        // What leaves the radius fades from 0.75 of it on, and no step shows at its end.
+        float weight = clamp((radius - far) / (0.25 * radius), 0.0, 1.0);
         found = max(found, mix(low, dot(d, v) / max(far, 1e-6), weight));
     }
     return found;
@@ -52,23 +58,26 @@ float visibilityOf(ivec2 at, vec3 p) {
         return 1.0;
     }
     float turn = float(((at.x + at.y) & 3) * 4 + (at.x & 3)) / 16.0;
-    float shift = 0.125 + 0.25 * float((at.y - at.x) & 3), sum = 0.0;
+    float shift = 0.125 + 0.25 * float((at.y - at.x) & 3), seen = 0.0, open = 0.0;
+    vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), v)), up = cross(v, right);
     for (float i = 0.0; i < u_view.ao.z; i += 1.0) {
         float angle = (i + turn) * 3.14159265 / u_view.ao.z;
-        vec2 w = vec2(cos(angle), sin(angle));
-        vec3 across = normalize(cross(vec3(w, 0.0), v));
-        vec3 flat_ = normal - across * dot(normal, across); // the normal within the slice
-        float size = max(length(flat_), 1e-5);
-        float cosN = clamp(dot(flat_, v) / size, -1.0, 1.0);
-        vec3 tangent = vec3(w, 0.0) - v * dot(vec3(w, 0.0), v);
-        float n = sign(dot(tangent, flat_)) * acos(cosN);
-        float right = acos(horizon(p, v, w * reach, cos(n + 1.57079633), shift));
-        float left = -acos(horizon(p, v, -w * reach, cos(n - 1.57079633), shift));
-        right = n + clamp(right - n, -1.57079633, 1.57079633);
-        left = n + clamp(left - n, -1.57079633, 1.57079633);
-        sum += size * 0.25 * (arc(left, n, cosN) + arc(right, n, cosN));
+        vec3 tangent = cos(angle) * right + sin(angle) * up; // of the slice, across the view
+        vec2 w = u_view.camera.w > 0.0 ? tangent.xy - tangent.z * p.xy / p.z : tangent.xy;
+        vec3 across = cross(tangent, v);
+        vec3 within = normal - across * dot(normal, across);
+        float size = max(length(within), 1e-5);
+        float cosN = clamp(dot(within, v) / size, -1.0, 1.0);
+        float n = sign(dot(tangent, within)) * acos(cosN);
+        w = normalize(w) * reach;
+        float h1 = acos(horizon(p, v, normal, w, cos(n + 1.57079633), shift));
+        float h0 = -acos(horizon(p, v, normal, -w, cos(n - 1.57079633), shift));
+        h1 = min(h1, n + 1.57079633);
+        h0 = max(h0, n - 1.57079633);
+        seen += size * 0.25 * (arc(h0, n, cosN) + arc(h1, n, cosN));
+        open += size * (cosN + n * sin(n)); // the same without any horizon
     }
-    return clamp(sum / u_view.ao.z, 0.0, 1.0);
+    return clamp(seen / open, 0.0, 1.0);
 }
 
 void main() {

@@ -1,9 +1,8 @@
 // Positions of the depth buffer.
 layout(binding = GFX_TEX_DEPTH) uniform sampler2D u_depth;
 
-// Of a pixel's centre in view space; depth repeats beyond the border.
+// Of a pixel's centre in view space.
 vec3 viewPosition(ivec2 at) {
-    at = clamp(at, ivec2(0), ivec2(u_view.viewport.xy) - 1);
     float depth = viewDepth(texelFetch(u_depth, at, 0).r);
     vec2 ndc = (vec2(at) + 0.5) * u_view.viewport.zw * 2.0 - 1.0;
     vec2 lens = u_view.lens.xy * (u_view.camera.w > 0.0 ? depth : 1.0);

@@ -97,7 +97,8 @@ void main() {
 #ifdef USE_FOG
     vec3 eye = u_view.camera.w > 0.0 ? u_view.camera.xyz
                                      : v_world + s.view * viewDepth(gl_FragCoord.z);
-    radiance = mix(u_view.fog_color.rgb, radiance, fogPasses(eye, v_world - eye));
+    float passes = fogPasses(eye, v_world - eye);
+    radiance = radiance * passes + u_view.fog_color.rgb * (1.0 - passes);
 #endif
 #ifdef USE_BLEND
     o_color = vec4(radiance * base.a, base.a);

@@ -46,6 +46,26 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //                all lights, rightly and slowly, and counted in gfx_stats; gpu has no cap
 //   exposure     factor before the tone map, > 0, default 1
 //   tonemap      neutral (Khronos PBR Neutral) | linear
+//   msaa         off | 2 | 4 | 8 samples a pixel; as many as the device has, with a warning
+//   fxaa         off | on: edges smoothed in the encoded picture (Lottes 2009)
+//   ao           0..1, strength of ambient occlusion (GTAO: Jimenez and others 2016); 0: off. It
+//                darkens ambient light alone, of opaque surfaces
+//   ao_radius    m, > 0, default 0.5: nothing farther occludes
+//   ao_slices, ao_steps  1..16, 1..32: directions, and samples to each side; default 2, 4
+//   bloom        0..1: share of bright light that scatters in the lens; 0: off. What scatters is
+//                taken from where it came
+//   bloom_threshold  radiance, default 0: only what exceeds it scatters
+//   bloom_levels, bloom_spread  halvings, 1..8, default 6; 0..1, default 0.7: share that each level
+//                hands to the wider one below
+//   auto_exposure  off | on: the mean log luminance between the darkest and the brightest twentieth
+//                comes to `key`; exposure stays a factor on top
+//   key          default 0.18
+//   adapt        0..1, default 1: share of the way to the wanted exposure (in log2) a frame
+//   contrast, saturation  default 1; about middle grey in log2, about the luminance
+//   lift, gain   added, multiplied before those: a number or R,G,B; default 0, 1
+//   fog          density (1/m) at height fog_base (m, default 0); 0: off
+//   fog_falloff  1/m, default 0: the density falls as exp(-fog_falloff * (y - fog_base))
+//   fog_color    R,G,B radiance, default 0.5,0.55,0.6
 //   shadows      off | pcf (filtered over 3 x 3 texels) | soft (wider the farther the blocker)
 //   shadow_size  texels of a map's side, 16..8192, default 1024
 //   shadow_distance  m of view depth that a sun's cascades cover, default 80
@@ -259,6 +279,15 @@ bool gfx_device_read(gfx_device *device, uint8_t *rgba);
 bool gfx_device_read_float(gfx_device *device, float *rgba);
 // Reversed-Z depth, width*height floats, rows top to bottom.
 bool gfx_device_read_depth(gfx_device *device, float *depth);
+// What a pass of the frame last rendered left: hdr (as gfx_device_read_float), depth, ao
+// (visibility of ambient light, 0..1), bloom (scattered radiance at half the size), picture
+// (encoded, 0..1). rgba: width*height*4 floats, one-channel passes repeated in r, g and b, a 1;
+// NULL asks for the size alone. False + core_fail when there is no such pass or it did not run.
+bool gfx_device_read_pass(gfx_device *device, const char *pass, float *rgba, uint32_t *width,
+                          uint32_t *height);
+// The same as a PNG: ao and depth (near / distance) as grey, hdr and bloom clipped to 1 and
+// encoded.
+bool gfx_device_shot_pass(gfx_device *device, const char *pass, const char *real_path);
 bool gfx_device_shot(gfx_device *device, const char *real_path); // PNG, makes parent folders
 bool gfx_device_resize(gfx_device *device, uint32_t width, uint32_t height);
 void gfx_device_size(const gfx_device *device, uint32_t *width, uint32_t *height);
@@ -290,9 +319,10 @@ typedef enum gfx_cursor { GFX_CURSOR_NORMAL, GFX_CURSOR_HIDDEN, GFX_CURSOR_LOCKE
 void gfx_device_set_cursor(gfx_device *device, gfx_cursor cursor);
 const char *gfx_device_name(const gfx_device *device); // GL_RENDERER
 bool gfx_device_software(const gfx_device *device);
-// What the receipt shows: passes of the last frame, shader variants made so far.
+// What the receipt shows: passes of the last frame, shader variants made so far, bytes of targets.
 typedef struct gfx_device_use {
     uint32_t passes, shader_variants;
+    size_t target_bytes;
 } gfx_device_use;
 gfx_device_use gfx_device_used(const gfx_device *device);
 

@@ -3,12 +3,8 @@
 
 #include "core/log.h"
 
-#include <stb_image_write.h>
-
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { MAX_SIZE = 16384 };
 
@@ -182,70 +178,8 @@ bool gfx_device_reload(gfx_device *device) {
 
 const char *gfx_device_name(const gfx_device *device) { return device->name; }
 gfx_device_use gfx_device_used(const gfx_device *device) {
-    return (gfx_device_use){.passes = device->passes, .shader_variants = device->shaders.count};
+    return (gfx_device_use){.passes = device->passes,
+                            .shader_variants = device->shaders.count,
+                            .target_bytes = gfx_targets_bytes(device, &device->targets)};
 }
 bool gfx_device_software(const gfx_device *device) { return device->software; }
-
-// Turns the picture upside down in place: GL's first row is the lowest.
-static void flip_rows(uint8_t *data, size_t stride, uint32_t height) {
-    for (uint32_t y = 0; y < height / 2; ++y) {
-        uint8_t *a = data + y * stride, *b = data + (height - 1 - y) * stride;
-        for (size_t i = 0; i < stride; ++i) {
-            uint8_t t = a[i];
-            a[i] = b[i];
-            b[i] = t;
-        }
-    }
-}
-
-static bool read_texture(gfx_device *d, GLuint texture, GLenum format, GLenum type, size_t pixel,
-                         void *out) {
-    if (!out || !d->context->table->make_current(d->context)) {
-        return false;
-    }
-    uint32_t before = d->gl_errors;
-    size_t stride = d->width * pixel;
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glGetTextureImage(texture, 0, format, type, (GLsizei)(stride * d->height), out);
-    flip_rows(out, stride, d->height);
-    return gfx_device_check(d, "gfx_device_read", before);
-}
-
-bool gfx_device_read(gfx_device *device, uint8_t *rgba) {
-    return read_texture(device, device->targets.picture.texture, GL_RGBA, GL_UNSIGNED_BYTE, 4,
-                        rgba);
-}
-
-bool gfx_device_read_float(gfx_device *device, float *rgba) {
-    return read_texture(device, device->targets.hdr.texture, GL_RGBA, GL_FLOAT, 16, rgba);
-}
-
-bool gfx_device_read_depth(gfx_device *device, float *depth) {
-    return read_texture(device, device->targets.depth, GL_DEPTH_COMPONENT, GL_FLOAT, 4, depth);
-}
-
-static bool make_parents(const char *path) {
-    char folder[4096];
-    snprintf(folder, sizeof folder, "%s", path);
-    for (char *at = strchr(folder + 1, '/'); at; at = strchr(at + 1, '/')) {
-        *at = '\0';
-        if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-            return core_fail("%s: the folder %s cannot be made (%s)", path, folder,
-                             strerror(errno));
-        }
-        *at = '/';
-    }
-    return true;
-}
-
-bool gfx_device_shot(gfx_device *device, const char *real_path) {
-    size_t bytes = (size_t)device->width * device->height * 4;
-    uint8_t *rgba = core_alloc(bytes);
-    bool ok = make_parents(real_path) && gfx_device_read(device, rgba);
-    if (ok && !stbi_write_png(real_path, (int)device->width, (int)device->height, 4, rgba,
-                              (int)device->width * 4)) {
-        ok = core_fail("%s: the picture cannot be written (%s)", real_path, strerror(errno));
-    }
-    core_free(rgba);
-    return ok;
-}
