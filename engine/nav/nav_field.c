@@ -18,27 +18,26 @@ typedef struct outline { // a convex polygon: a triangle cut by four lines has a
     float p[8][3]; // x, y, z
 } outline;
 
-// Cuts an outline at `at` along an axis: `low` gets what lies below, `high` what lies above.
-static void cut(const outline *in, int axis, float at, outline *low, outline *high) {
-    low->count = high->count = 0;
+// The part of an outline on one side of a line across an axis: beyond it (side 1) or before it
+// (-1).
+static void keep(const outline *in, int axis, float at, float side, outline *out) {
+    out->count = 0;
+    const float *a = in->p[in->count - 1];
+    float da = side * (a[axis] - at);
     for (int i = 0; i < in->count; i++) {
-        const float *a = in->p[i], *b = in->p[(i + 1) % in->count];
-        float da = a[axis] - at, db = b[axis] - at;
-        if (da <= 0.0f) {
-            memcpy(low->p[low->count++], a, sizeof in->p[0]);
-        }
-        if (da >= 0.0f) {
-            memcpy(high->p[high->count++], a, sizeof in->p[0]);
-        }
+        const float *b = in->p[i];
+        float db = side * (b[axis] - at);
         if ((da < 0.0f && db > 0.0f) || (da > 0.0f && db < 0.0f)) {
-            float t = da / (da - db), m[3];
+            float t = da / (da - db), *m = out->p[out->count++];
             for (int k = 0; k < 3; k++) {
                 m[k] = a[k] + (b[k] - a[k]) * t;
             }
             m[axis] = at;
-            memcpy(low->p[low->count++], m, sizeof m);
-            memcpy(high->p[high->count++], m, sizeof m);
         }
+        if (db >= 0.0f) {
+            memcpy(out->p[out->count++], b, sizeof in->p[0]);
+        }
+        a = b, da = db;
     }
 }
 
@@ -89,19 +88,20 @@ static range cells_of(const outline *o, int axis, float origin, float size) {
                    (int64_t)core_floor((double)((high - origin) / size))};
 }
 
-// The part of an outline in one of the rows or columns of cells that it crosses.
-static void slice(const outline *whole, int axis, range all, int64_t at, float origin, float size,
-                  outline *out) {
-    outline rest;
-    *out = *whole;
+// The part of an outline in one of the rows or columns of cells that it crosses; in `room`, or the
+// whole itself.
+static const outline *slice(const outline *whole, int axis, range all, int64_t at, float origin,
+                            float size, outline room[2]) {
+    const outline *part = whole;
     if (at > all.low) {
-        outline in = *out;
-        cut(&in, axis, origin + (float)at * size, &rest, out);
+        keep(part, axis, origin + (float)at * size, 1.0f, &room[0]);
+        part = &room[0];
     }
-    if (at < all.high) {
-        outline in = *out;
-        cut(&in, axis, origin + (float)(at + 1) * size, out, &rest);
+    if (at < all.high && part->count) {
+        keep(part, axis, origin + (float)(at + 1) * size, -1.0f, &room[1]);
+        part = &room[1];
     }
+    return part;
 }
 
 static float cover_of(const outline *o, float facing) {
@@ -148,22 +148,22 @@ bool nav_field_add(nav_field *field, const nav_triangle *t) {
         return true; // no area
     }
     f.walkable = f.normal.y >= field->least_normal_y * length && f.normal.y > 0.0f;
-    outline all = {.count = 3}, strip, part;
+    outline all = {.count = 3}, rows_room[2], cell_room[2];
     memcpy(all.p, t->corner, sizeof t->corner);
     float size = field->cell_size;
     range rows = cells_of(&all, 2, field->origin.z, size);
     range seen = within(rows, field->window.z, field->window.depth);
     for (int64_t z = seen.low; z <= seen.high; z++) {
-        slice(&all, 2, rows, z, field->origin.z, size, &strip);
-        if (strip.count < 3) {
+        const outline *strip = slice(&all, 2, rows, z, field->origin.z, size, rows_room);
+        if (strip->count < 3) {
             continue;
         }
-        range columns = cells_of(&strip, 0, field->origin.x, size);
+        range columns = cells_of(strip, 0, field->origin.x, size);
         range here = within(columns, field->window.x, field->window.width);
         for (int64_t x = here.low; x <= here.high; x++) {
-            slice(&strip, 0, columns, x, field->origin.x, size, &part);
-            if (part.count >= 3) {
-                fragment out = fragment_of(field, &f, &part, x, z);
+            const outline *part = slice(strip, 0, columns, x, field->origin.x, size, cell_room);
+            if (part->count >= 3) {
+                fragment out = fragment_of(field, &f, part, x, z);
                 if (!emit(field, &out)) {
                     return false;
                 }

@@ -196,22 +196,21 @@ static void mark_edges(nav_mesh_data *m, uint32_t tile) {
     }
 }
 
-// Independent of where in the arrays a tile's spans lie: links count as heights.
+// Independent of where in the arrays a tile's spans lie: links count as places in the next cell.
 static uint64_t hash_tile(const nav_mesh_data *m, uint32_t tile) {
     const nav_spans *sp = &m->span;
     nav_block own = m->tile[tile].span;
     uint64_t hash = core_hash_mix(tile, own.count);
     for (uint32_t s = own.first; s < own.first + own.count; s++) {
-        uint32_t bits[7] = {sp->z[s] * m->width + sp->x[s], sp->area[s], 0, 0, 0, 0, 0};
-        memcpy(&bits[2], &sp->y[s], sizeof bits[2]);
+        uint64_t cell = sp->z[s] * m->width + sp->x[s], links = sp->area[s];
+        uint32_t y;
+        memcpy(&y, &sp->y[s], sizeof y);
         for (int d = 0; d < 4; d++) {
             uint32_t t = sp->link[s][d];
-            bits[3 + d] = UINT32_MAX;
-            if (t != NAV_NONE) {
-                memcpy(&bits[3 + d], &sp->y[t], sizeof bits[0]);
-            }
+            uint32_t place = t == NAV_NONE ? 0 : 1 + t - sp->first[sp->z[t] * m->width + sp->x[t]];
+            links = links << 14 ^ place;
         }
-        hash = core_hash(bits, sizeof bits, hash);
+        hash = core_hash_mix(core_hash_mix(hash, cell << 32 | y), links);
     }
     return hash;
 }
