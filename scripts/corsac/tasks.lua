@@ -68,7 +68,8 @@ local ease = {
 }
 
 lua["corsac.tween"] = function(options)
-    local target, goals, first = options.target, options.goals, {}
+    local target, goals = options.target, options.goals
+    local names, first, last = {}, {}, {} -- lists: the steps make no garbage
     if (target == nil) ~= (goals == nil) then
         error("corsac.tween: target and goals go together", 2)
     end
@@ -77,7 +78,8 @@ lua["corsac.tween"] = function(options)
             error(("corsac.tween: goals.%s: expected numbers in goals and in target"):format(
                 tostring(name)), 2)
         end
-        first[name] = target[name]
+        local i = #names + 1
+        names[i], first[i], last[i] = name, target[name], goal
     end
     local length, shape = steps(options.length), ease[options.ease or "smooth"]
     local from, to = options.from or 0, options.to or 1
@@ -88,8 +90,8 @@ lua["corsac.tween"] = function(options)
         run = function()
             at = at + 1
             local t = shape(min(1, at / length))
-            for name, goal in pairs(goals or {}) do
-                target[name] = first[name] + (goal - first[name]) * t
+            for i = 1, #names do
+                target[names[i]] = first[i] + (last[i] - first[i]) * t
             end
             if options.step then options.step(from + (to - from) * t) end
             if at == length and options.done then options.done() end

@@ -26,7 +26,11 @@ function corsac.load()
         color = { 0.9, 0.2, 0.2 } }
 end
 
+-- Written over in every step: a step makes no garbage.
+local reach = { goal = 1, bone = "", keepRotation = true, target = { 0, 0, 0 } }
+local look = { goal = 5, kind = "look", bone = "head", limit = 1, target = { 0, 0, 0 } }
 local step, worst, turned = 0, 0, 0
+
 function corsac.fixed()
     step = step + 1
     local bx, by, bz = 0.9 * math.sin(step * 0.03), 0.9, 1.3
@@ -44,11 +48,14 @@ function corsac.fixed()
         for k, paw in ipairs(paws) do
             local side = k % 2 == 1 and 0.06 or -0.06
             local pz = k <= 2 and 0.14 or -0.19
-            animator:setGoal{ goal = k, bone = paw, keepRotation = true,
-                target = { side, ground(z + pz) - y + 0.035, pz } }
+            local at = reach.target
+            reach.goal, reach.bone = k, paw
+            at[1], at[2], at[3] = side, ground(z + pz) - y + 0.035, pz
+            animator:setGoal(reach)
         end
-        animator:setGoal{ goal = 5, kind = "look", bone = "head", limit = 1,
-            target = { bx - x, by - y, bz - z } }
+        local at = look.target
+        at[1], at[2], at[3] = bx - x, by - y, bz - z
+        animator:setGoal(look)
     end
     corsac.metrics.set("worst_paw_m", worst)
     corsac.metrics.set("reach", turned)

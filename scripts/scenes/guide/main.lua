@@ -35,7 +35,10 @@ end
 
 local function addFox()
     local model = anim.loadModel("models/fox.cmodel")
-    local walker = scene.spawn{ position = { -6, 0, 4 } } -- agents look along -Z, the model along +Z
+    local walker = scene.spawn{ -- agents look along -Z, the model along +Z
+        position = { -6, 0, 4 },
+        body = { type = "kinematic", shape = "sphere", radius = 0.25, layer = "fox" },
+    }
     fox = scene.spawn{
         model = model, parent = walker, rotation = { axis = { 0, 1, 0 }, angle = math.pi },
         machine = anim.newMachine{
@@ -61,12 +64,14 @@ end
 local function addPlate()
     local chime = audio.newSound("sounds/chime.wav")
     scene.spawn{ position = { 0, 0.01, 0 }, mesh = "cylinder", scale = { 1.6, 0.02, 1.6 }, color = { 0.9, 0.8, 0.3 } }
-    corsac.on("plate", function()
-        world.visits = world.visits + 1
-        audio.newSource{ sound = chime, position = { 0, 1, -3 } }
-        corsac.tween{ length = 1.5, target = world, goals = { doorOpen = 1 }, ease = "smooth" }
-        return false -- once
-    end)
+    phys.newTrigger{
+        shape = "box", size = { 1.6, 1, 1.6 }, position = { 0, 0.5, 0 }, layer = "fox",
+        onEnter = function()
+            world.visits = world.visits + 1
+            audio.newSource{ sound = chime, position = { 0, 1, -3 } }
+            corsac.tween{ length = 1.5, target = world, goals = { doorOpen = 1 }, ease = "smooth" }
+        end,
+    }
 end
 
 function corsac.load()
@@ -86,10 +91,8 @@ function corsac.load()
 end
 
 function corsac.fixed()
-    local x, _, z = fox:getPosition()
     local vx, _, vz = agent:getVelocity()
     fox:getAnimator():setParameter("speed", math.sqrt(vx * vx + vz * vz))
-    if x * x + z * z < 0.6 then corsac.emit("plate") end
     door:setPosition(2 * world.doorOpen, 1, -3)
     corsac.metrics.set("visits", world.visits)
     corsac.metrics.set("door", (door:getPosition()))

@@ -30,8 +30,11 @@ function corsac.load()
     gfx.setCamera{ position = { 0, 1.5 * radius, 1.3 * radius }, target = { 0, 0, 0 } }
 end
 
+-- garbage: two bytes an agent and step, boxed where a step leaves compiled code
+local x, z = {}, {}
+
 function corsac.fixed()
-    local arrived, x, z = 0, {}, {}
+    local arrived = 0
     for i, agent in ipairs(agents) do
         local _
         x[i], _, z[i] = agent:getPosition()

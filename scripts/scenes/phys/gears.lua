@@ -28,11 +28,12 @@ function corsac.load()
   gfx.setCamera{ position = { 2.5, 1.5, 6 }, target = { 2.2, 0, 0 }, fov = 0.9, far = 200 }
 end
 
+local function speed(i)
+  local _, _, z = wheels[i]:getAngularVelocity()
+  return z
+end
+
 function corsac.fixed()
-  local function speed(i)
-    local _, _, z = wheels[i]:getAngularVelocity()
-    return z
-  end
   corsac.metrics.set("first", speed(1))
   corsac.metrics.set("ratio", speed(4) / math.max(speed(1), 0.01))
 end
