@@ -23,7 +23,7 @@ function corsac.update(dt)
 end
 """
 WINDOW, STEPS = 50, 451
-BOUND = 4  # bytes a step
+BOUND = 16  # bytes a step: where a step leaves compiled code, numbers are boxed
 
 
 class Garbage(SceneCase):
