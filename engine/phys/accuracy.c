@@ -1,6 +1,6 @@
 // How right the present state is, computed from poses in double precision. Shares no code with the
 // narrow phase or the solver on purpose: it judges them.
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 typedef struct v3 {
     double x, y, z;
@@ -9,6 +9,7 @@ typedef struct solid {
     v3 p, axis[3], half;   // axis: unit, world
     double radius, lo, hi; // lo, hi: extent along x
     const phys_geom_hull *hull;
+    const phys_mesh *mesh;
     uint32_t body, type;
     bool fixed;
 } solid;
@@ -66,6 +67,14 @@ static solid make_solid(const phys_world *w, uint32_t i) {
     o.axis[0] = turn(q, turn(l, (v3){1, 0, 0}));
     o.axis[1] = turn(q, turn(l, (v3){0, 1, 0}));
     o.axis[2] = turn(q, turn(l, (v3){0, 0, 1}));
+    if (o.type == PHYS_MESH) {
+        phys_geom g = phys_shape_geom(w, i);
+        core_aabb box = phys_geom_bounds(&g);
+        o.mesh = g.mesh;
+        o.lo = box.min.x;
+        o.hi = box.max.x;
+        return o;
+    }
     o.hull = s->hull[i] ? &w->hulls[s->hull[i] - 1].hull : NULL;
     if (o.type == PHYS_PLANE) {
         o.lo = -1e30;
@@ -94,8 +103,14 @@ static double depth_sphere_box(const solid *s, const solid *b) {
     return s->radius + CORE_MIN(gx, CORE_MIN(gy, gz));
 }
 
-// Overlap along an axis from a to b; `least` keeps the smallest. False: they are apart.
-static bool try_axis(const solid *a, const solid *b, v3 n, double *least) {
+// The least overlap found so far, and its direction.
+typedef struct least_axis {
+    double overlap;
+    v3 n;
+} least_axis;
+
+// Overlap along an axis from a to b. False: they are apart.
+static bool try_axis(const solid *a, const solid *b, v3 n, least_axis *least) {
     double l = len(n);
     if (l < 1e-8) {
         return true;
@@ -105,8 +120,11 @@ static bool try_axis(const solid *a, const solid *b, v3 n, double *least) {
     double d = dot(sub(b->p, a->p), n);
     double forward = support(a, n) + support(b, back) - d;
     double backward = support(a, back) + support(b, n) + d;
-    *least = CORE_MIN(*least, CORE_MIN(forward, backward));
-    return *least > 0;
+    double overlap = CORE_MIN(forward, backward);
+    if (overlap < least->overlap) {
+        *least = (least_axis){overlap, n};
+    }
+    return least->overlap > 0;
 }
 
 static uint32_t direction_count(const solid *s, bool faces) {
@@ -144,18 +162,41 @@ static v3 direction(const solid *s, uint32_t i, bool faces) {
                 x.z * l.x + y.z * l.y + z.z * l.z};
 }
 
-// Separating axes: face normals, edge pairs, and the line of centres for round shapes. Exact for
-// boxes and hulls; for capsules and cylinders an upper bound of the overlap.
+static v3 add_scaled(v3 a, v3 b, double s) {
+    return (v3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
+
+static bool curved(const solid *s) { return s->type == PHYS_CAPSULE || s->type == PHYS_CYLINDER; }
+
+// Round sides have endless axes: goes downhill from the best of the others (Hooke, Jeeves, "Direct
+// search", 1961).
+static void try_around(const solid *a, const solid *b, least_axis *least) {
+    for (double step = 0.5; step > 1e-5;) {
+        v3 n = least->n, side = mag(n.x) < 0.7 ? (v3){1, 0, 0} : (v3){0, 1, 0};
+        v3 t = cross(n, side), u = cross(n, t);
+        double before = least->overlap;
+        for (int k = 0; k < 8; k++) {
+            static const int x[] = {1, 1, 0, -1, -1, -1, 0, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1};
+            v3 way = add_scaled(add_scaled(n, t, step * x[k]), u, step * y[k]);
+            if (!try_axis(a, b, way, least)) {
+                return;
+            }
+        }
+        step *= least->overlap < before ? 1.0 : 0.5;
+    }
+}
+
+// Separating axes: face normals, edge pairs, and the line of centres for round shapes.
 static double depth_axes(const solid *a, const solid *b) {
-    double least = 1e300;
+    least_axis least = {1e300, {0, 1, 0}};
     if (!try_axis(a, b, sub(b->p, a->p), &least)) {
-        return least;
+        return least.overlap;
     }
     for (int side = 0; side < 2; side++) {
         const solid *s = side ? b : a;
         for (uint32_t i = 0; i < direction_count(s, true); i++) {
             if (!try_axis(a, b, direction(s, i, true), &least)) {
-                return least;
+                return least.overlap;
             }
         }
     }
@@ -163,11 +204,70 @@ static double depth_axes(const solid *a, const solid *b) {
         v3 u = direction(a, i, false);
         for (uint32_t j = 0; j < direction_count(b, false) && dot(u, u) > 0; j++) {
             if (!try_axis(a, b, cross(u, direction(b, j, false)), &least)) {
-                return least;
+                return least.overlap;
             }
         }
     }
-    return least;
+    if (curved(a) || curved(b)) {
+        try_around(a, b, &least);
+    }
+    return least.overlap;
+}
+
+static double line_distance(v3 p, v3 a, v3 b) {
+    v3 ab = sub(b, a);
+    double l2 = dot(ab, ab), t = l2 > 0 ? dot(sub(p, a), ab) / l2 : 0;
+    return len(sub(p, add_scaled(a, ab, CORE_CLAMP(t, 0.0, 1.0))));
+}
+
+// Radius less the distance from the triangle.
+static double depth_sphere_triangle(const solid *s, const solid *t) {
+    v3 p[3];
+    for (int k = 0; k < 3; k++) {
+        core_vec3 l = t->hull->vertex[k];
+        p[k] = add_scaled(t->p, t->axis[0], l.x);
+        p[k] = add_scaled(add_scaled(p[k], t->axis[1], l.y), t->axis[2], l.z);
+    }
+    v3 n = cross(sub(p[1], p[0]), sub(p[2], p[0]));
+    bool over = true;
+    double least = 1e300;
+    for (int k = 0; k < 3; k++) {
+        v3 a = p[k], b = p[(k + 1) % 3];
+        over = over && dot(cross(n, sub(b, a)), sub(s->p, a)) >= 0;
+        least = CORE_MIN(least, line_distance(s->p, a, b));
+    }
+    return s->radius - (over ? mag(dot(n, sub(s->p, p[0]))) / len(n) : least);
+}
+
+// How deep a shape is in the triangles of a mesh: in the one that it is deepest in. Each is a flat
+// hull whose directions are its normal and its edges.
+static double depth_mesh(const solid *a, const solid *mesh) {
+    core_vec3 corner[3], normal[2];
+    uint32_t begin[] = {0, 3, 6}, loop[] = {0, 1, 2, 2, 1, 0};
+    phys_geom_hull hull = {3, 2, 6, corner, normal, NULL, begin, loop};
+    solid t = {.p = mesh->p, .type = PHYS_HULL, .hull = &hull};
+    phys_box box;
+    double most = -1.0;
+    for (int k = 0; k < 3; k++) {
+        t.axis[k] = mesh->axis[k];
+        double at = dot(sub(a->p, mesh->p), mesh->axis[k]);
+        v3 n = mesh->axis[k], back = {-n.x, -n.y, -n.z};
+        box.lo[k] = (float)(at - support(a, back)) - 1e-3f;
+        box.hi[k] = (float)(at + support(a, n)) + 1e-3f;
+    }
+    phys_mesh_walk walk;
+    phys_mesh_walk_begin(&walk, mesh->mesh, &box);
+    for (uint32_t i; (i = phys_mesh_walk_next(&walk)) != PHYS_MESH_NONE;) {
+        for (uint32_t k = 0; k < 3; k++) {
+            corner[k] = mesh->mesh->vertex[mesh->mesh->index[3 * (size_t)i + k]];
+        }
+        normal[0] =
+            core_v3_cross(core_v3_sub(corner[1], corner[0]), core_v3_sub(corner[2], corner[0]));
+        normal[1] = core_v3_scale(normal[0], -1.0f);
+        double d = a->type == PHYS_SPHERE ? depth_sphere_triangle(a, &t) : depth_axes(a, &t);
+        most = CORE_MAX(most, d);
+    }
+    return most;
 }
 
 // > 0: the two overlap by so many metres.
@@ -176,6 +276,9 @@ static double depth(const solid *a, const solid *b) {
         const solid *t = a;
         a = b;
         b = t;
+    }
+    if (b->type == PHYS_MESH) {
+        return depth_mesh(a, b);
     }
     if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
         const solid *plane = a->type == PHYS_PLANE ? a : b, *s = plane == a ? b : a;

@@ -1,5 +1,5 @@
 // Bodies: creation, destruction, and the getters and setters of their state.
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 CORE_COLUMNS_DEFINE(phys_bodies, PHYS_BODY_COLUMNS)
 
@@ -122,10 +122,13 @@ static void add_shape(phys_world *w, uint32_t body_slot, uint32_t body_row,
     s->type[i] = d->type;
     bool round = d->type == PHYS_SPHERE || d->type == PHYS_CAPSULE || d->type == PHYS_CYLINDER;
     bool tall = d->type == PHYS_CAPSULE || d->type == PHYS_CYLINDER;
-    s->hull[i] = hull;
+    s->hull[i] = hull; // or mesh
     s->half[i] = tall ? core_v3(0, d->half_height, 0) : d->half;
     s->radius[i] = round ? d->radius : 0.0f;
-    if (hull != 0) {
+    if (d->type == PHYS_MESH) {
+        core_aabb box = phys_mesh_bounds(phys_mesh_at(w, hull));
+        s->half[i] = core_v3_scale(core_v3_sub(box.max, box.min), 0.5f);
+    } else if (hull != 0) {
         const phys_geom_hull *made = &w->hulls[hull - 1].hull;
         core_aabb box = phys_geom_bounds_convex(made->vertex, made->vertex_count, core_v3(0, 0, 0),
                                                 core_quat_identity());
@@ -144,10 +147,36 @@ static void add_shape(phys_world *w, uint32_t body_slot, uint32_t body_row,
     s->rolling[i] = d->rolling;
 }
 
-static void leave_hulls(phys_world *w, const uint32_t *hull, uint32_t count) {
-    for (uint32_t k = 0; k < count; k++) {
-        phys_hull_leave(w, hull[k]);
+// The shared part of a shape: the number of its hull or mesh.
+static void leave_part(phys_world *w, uint32_t type, uint32_t number) {
+    if (type == PHYS_MESH) {
+        phys_mesh_leave(w, number);
+    } else {
+        phys_hull_leave(w, number);
     }
+}
+
+static void leave_parts(phys_world *w, const phys_shape_desc *shapes, const uint32_t *number,
+                        uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) {
+        leave_part(w, shapes[k].type, number[k]);
+    }
+}
+
+// False: some shape has none that can be made; nothing is held then.
+static bool share_parts(phys_world *w, const phys_shape_desc *shapes, uint32_t *number,
+                        uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) {
+        bool hull = shapes[k].type == PHYS_HULL, mesh = shapes[k].type == PHYS_MESH;
+        number[k] = hull   ? phys_hull_share(w, &shapes[k])
+                    : mesh ? phys_mesh_share(w, &shapes[k])
+                           : 0;
+        if ((hull || mesh) && number[k] == 0) {
+            leave_parts(w, shapes, number, k);
+            return false;
+        }
+    }
+    return true;
 }
 
 phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_shape_desc *shapes,
@@ -163,17 +192,13 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     }
     size_t mark = core_arena_mark(&w->scratch);
     uint32_t *hull = CORE_ARENA_ARRAY(&w->scratch, uint32_t, count);
-    for (uint32_t k = 0; k < count; k++) {
-        hull[k] = shapes[k].type == PHYS_HULL ? phys_hull_share(w, &shapes[k]) : 0;
-        if (shapes[k].type == PHYS_HULL && hull[k] == 0) {
-            leave_hulls(w, hull, k);
-            core_arena_rewind(&w->scratch, mark);
-            return CORE_NULL_HANDLE;
-        }
+    if (!share_parts(w, shapes, hull, count)) {
+        core_arena_rewind(&w->scratch, mark);
+        return CORE_NULL_HANDLE;
     }
     core_handle h = core_columns_add(&b->set);
     if (core_handle_is_null(h)) {
-        leave_hulls(w, hull, count);
+        leave_parts(w, shapes, hull, count);
         core_arena_rewind(&w->scratch, mark);
         return h;
     }
@@ -181,7 +206,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     b->iq[i] = core_quat_identity();
     if (d->type == PHYS_DYNAMIC && !set_mass(b, i, shapes, count)) {
         core_columns_remove(&b->set, h, NULL, NULL);
-        leave_hulls(w, hull, count);
+        leave_parts(w, shapes, hull, count);
         core_arena_rewind(&w->scratch, mark);
         return CORE_NULL_HANDLE;
     }
@@ -228,7 +253,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
     for (uint32_t slot = w->bodies.shape[row]; slot != 0;) {
         uint32_t i = phys_slot_row(&w->shapes.set, slot), next = w->shapes.next[i];
         phys_pairs_drop_shape(w, slot);
-        phys_hull_leave(w, w->shapes.hull[i]);
+        leave_part(w, w->shapes.type[i], w->shapes.hull[i]);
         core_columns_remove(&w->shapes.set, core_columns_handle(&w->shapes.set, i), NULL, NULL);
         slot = next;
     }

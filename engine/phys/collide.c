@@ -1,6 +1,6 @@
 // Narrow phase of round and flat shapes: closed forms. Normals point from a to b; anchors are left
 // relative to the world origin (narrow.c moves them to the centres of mass).
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 // One point half way between the two surfaces.
 static void one_point(phys_manifold *m, core_vec3 on_a, core_vec3 on_b, core_vec3 normal,
@@ -71,7 +71,9 @@ void phys_collide(const phys_geom *a, const phys_geom *b, float margin, phys_man
     bool swap = a->type > b->type;
     const phys_geom *first = swap ? b : a, *second = swap ? a : b;
     collide_fn *fn = phys_collide_convex;
-    if (second->type == PHYS_PLANE || first->type == PHYS_PLANE) {
+    if (second->type == PHYS_MESH) {
+        phys_mesh_collide(first, second, margin, out);
+    } else if (second->type == PHYS_PLANE || first->type == PHYS_PLANE) {
         bool plane_first = first->type == PHYS_PLANE;
         swap = swap != plane_first;
         const phys_geom *shape = plane_first ? second : first;

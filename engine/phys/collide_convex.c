@@ -3,7 +3,7 @@
 // for physics simulations", GDC 2015). A face is preferred to an edge pair of nearly the same
 // separation, so that what rests on a face keeps several points.
 #include "phys/geom.h"
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 #define FACE_BIAS   5e-4f // m: how much worse a face may separate and still be chosen
 #define TOUCHING    1e-4f // m
@@ -321,6 +321,14 @@ void phys_collide_convex(const phys_geom *a, const phys_geom *b, float margin, p
     }
 }
 
+void phys_collide_face(const phys_geom *flat, const phys_geom *b, core_vec3 n, float margin,
+                       phys_manifold *m) {
+    feature fa, fb;
+    find_feature(flat, n, &fa);
+    find_feature(b, core_v3_scale(n, -1.0f), &fb);
+    face_points(&fa, &fb, round_radius(flat), round_radius(b), false, margin, m);
+}
+
 // Against a plane: the corners of the feature that looks at it.
 void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *m) {
     feature f;
@@ -349,6 +357,9 @@ void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, ph
 }
 
 float phys_closest_on(const phys_geom *a, const phys_geom *b, core_vec3 *normal, core_vec3 *on_b) {
+    if (b->type == PHYS_MESH) {
+        return phys_mesh_separation(a, b, normal, on_b);
+    }
     if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
         const phys_geom *plane = a->type == PHYS_PLANE ? a : b, *shape = plane == a ? b : a;
         core_vec3 up = phys_mat_col(&plane->axes, 1);
@@ -367,7 +378,7 @@ float phys_closest_on(const phys_geom *a, const phys_geom *b, core_vec3 *normal,
 }
 
 float phys_separation(const phys_geom *a, const phys_geom *b, core_vec3 *normal) {
-    if (a->type == PHYS_PLANE || b->type == PHYS_PLANE) {
+    if (a->type == PHYS_PLANE || b->type == PHYS_PLANE || b->type == PHYS_MESH) {
         core_vec3 on_b;
         return phys_closest_on(a, b, normal, &on_b);
     }

@@ -282,11 +282,49 @@ static void contact_change(phys_world *w, bool touch, uint8_t *was, uint32_t sa,
     }
 }
 
+static float least_gap(const phys_manifold *m) {
+    float least = 1e30f;
+    for (uint32_t k = 0; k < m->count; k++) {
+        least = CORE_MIN(least, m->point[k].separation);
+    }
+    return least;
+}
+
+static bool on_mesh(const phys_world *w, uint32_t shape_slot) {
+    return w->shapes.type[phys_slot_row(&w->shapes.set, shape_slot)] == PHYS_MESH;
+}
+
+// A mesh is one thing to touch, in however many places: it tells of the first, with the greatest
+// speed of approach.
+static void mesh_contact(phys_world *w, uint32_t i, float dt) {
+    phys_mesh_pairs *p = &w->mesh_pairs;
+    bool touch = false;
+    float most = -1.0f;
+    core_vec3 normal = core_v3(0, 0, 0);
+    for (uint32_t k = 0; k < p->count[i]; k++) {
+        uint32_t slot = p->rows[i].slot[k];
+        uint32_t row = phys_slot_row(p->ball[i] ? &w->balls.set : &w->contacts.set, slot);
+        core_vec3 n = p->ball[i] ? phys_get3(w->balls.nx, w->balls.ny, w->balls.nz, row)
+                                 : w->contacts.manifold[row].normal;
+        float gap = p->ball[i] ? w->balls.separation[row] : least_gap(&w->contacts.manifold[row]);
+        float speed = closing_speed(w, p->a[i], p->b[i], n);
+        if (gap <= PHYS_TOUCH + speed * dt && speed > most) {
+            touch = true;
+            most = speed;
+            normal = n;
+        }
+    }
+    contact_change(w, touch, &p->touch[i], p->sa[i], p->sb[i], normal, most);
+}
+
 // Touching: the gap is closed, or closes within this step. Told before the solver changes
 // velocities, so that the speed is that of the approach.
 void phys_events_contacts(phys_world *w, float dt) {
     phys_balls *c = &w->balls;
     for (uint32_t i = 0; i < core_columns_count(&c->set); i++) {
+        if (on_mesh(w, c->sb[i])) {
+            continue;
+        }
         core_vec3 n = phys_get3(c->nx, c->ny, c->nz, i);
         float speed = closing_speed(w, c->a[i], c->b[i], n);
         contact_change(w, c->separation[i] <= PHYS_TOUCH + speed * dt, &c->touch[i], c->sa[i],
@@ -294,12 +332,15 @@ void phys_events_contacts(phys_world *w, float dt) {
     }
     phys_contacts *m = &w->contacts;
     for (uint32_t i = 0; i < core_columns_count(&m->set); i++) {
-        float least = 1e30f;
-        for (uint32_t k = 0; k < m->manifold[i].count; k++) {
-            least = CORE_MIN(least, m->manifold[i].point[k].separation);
+        if (on_mesh(w, m->sb[i])) {
+            continue;
         }
+        float least = least_gap(&m->manifold[i]);
         float speed = closing_speed(w, m->a[i], m->b[i], m->manifold[i].normal);
         contact_change(w, least <= PHYS_TOUCH + speed * dt, &m->touch[i], m->sa[i], m->sb[i],
                        m->manifold[i].normal, speed);
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->mesh_pairs.set); i++) {
+        mesh_contact(w, i, dt);
     }
 }

@@ -5,7 +5,7 @@
 
 #define NARROW_GRAIN 256u
 
-static float extent_of(const phys_shapes *s, uint32_t i) {
+float phys_shape_extent(const phys_shapes *s, uint32_t i) {
     float e = core_v3_length(s->half[i]) + s->radius[i];
     return (e > 0.0f ? e : PHYS_FAR) + core_v3_length(s->position[i]);
 }
@@ -19,31 +19,17 @@ static float thin_of(const phys_shapes *s, uint32_t i) {
                                        : s->radius[i];
 }
 
-static phys_moving moving_shape(const phys_world *w, uint32_t shape, uint32_t row) {
+phys_moving phys_shape_moving(const phys_world *w, uint32_t shape, uint32_t row) {
     const phys_bodies *b = &w->bodies;
     bool moves = phys_moves(b, row);
     phys_moving m = {.geom = phys_shape_geom(w, shape),
                      .center = phys_get3(b->cx, b->cy, b->cz, row),
-                     .extent = moves ? extent_of(&w->shapes, shape) : 0.0f};
+                     .extent = moves ? phys_shape_extent(&w->shapes, shape) : 0.0f};
     if (moves) {
         m.v = phys_get3(b->vx, b->vy, b->vz, row);
         m.w = phys_get3(b->wx, b->wy, b->wz, row);
     }
     return m;
-}
-
-// One point in the middle instead of several: a blow through the middle stops a body in one go,
-// while four at its corners would first set it spinning.
-static void merge_points(phys_manifold *m) {
-    phys_point p = m->point[0];
-    for (uint32_t k = 1; k < m->count; k++) {
-        p.ra = core_v3_add(p.ra, m->point[k].ra);
-        p.separation = CORE_MIN(p.separation, m->point[k].separation);
-    }
-    p.rb = p.ra = core_v3_scale(p.ra, 1.0f / (float)m->count);
-    p.feature = 1u << 30;
-    m->point[0] = p;
-    m->count = 1;
 }
 
 // Contact of a pair that may meet late in the step: point and normal are those of the moment they
@@ -58,20 +44,7 @@ static void sweep_pair(const phys_moving *a, const phys_moving *b, float dt, phy
     phys_geom ga = phys_moving_at(a, t), gb = phys_moving_at(b, t);
     m->normal = core_v3(0, 0, 0);
     phys_collide(&ga, &gb, PHYS_MARGIN, m);
-    if (m->count > 1) {
-        merge_points(m);
-    }
-    // Anchors from the centres as they are then; the gap that their motion closes until then.
-    core_vec3 way_a = core_v3_scale(a->v, t), way_b = core_v3_scale(b->v, t);
-    for (uint32_t k = 0; k < m->count; k++) {
-        phys_point *p = &m->point[k];
-        p->ra = core_v3_sub(p->ra, way_a);
-        p->rb = core_v3_sub(p->rb, way_b);
-        core_vec3 va = core_v3_cross(a->w, core_v3_sub(p->ra, a->center));
-        core_vec3 vb = core_v3_cross(b->w, core_v3_sub(p->rb, b->center));
-        core_vec3 v = core_v3_sub(core_v3_add(b->v, vb), core_v3_add(a->v, va));
-        p->separation -= t * core_v3_dot(v, m->normal);
-    }
+    phys_swept_points(a, b, t, m);
 }
 
 static bool touches(const phys_manifold *m) {
@@ -86,7 +59,7 @@ static bool touches(const phys_manifold *m) {
 // Slow pairs: what is within the margin. Fast ones: what touches, else what the sweep finds.
 static void search_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t ra, uint32_t rb,
                         float dt, phys_manifold *m) {
-    phys_moving a = moving_shape(w, sa, ra), b = moving_shape(w, sb, rb);
+    phys_moving a = phys_shape_moving(w, sa, ra), b = phys_shape_moving(w, sb, rb);
     float turn = core_v3_length(a.w) * a.extent + core_v3_length(b.w) * b.extent;
     float way = (core_v3_length(core_v3_sub(a.v, b.v)) + turn) * dt;
     float thin = CORE_MIN(thin_of(&w->shapes, sa), thin_of(&w->shapes, sb));
@@ -116,6 +89,10 @@ static void refresh_fixed_ball(phys_world *w, uint32_t i, float dt) {
     c->separation[i] = m.point[0].separation;
 }
 
+static bool on_mesh(const phys_world *w, uint32_t shape_slot) {
+    return w->shapes.type[phys_slot_row(&w->shapes.set, shape_slot)] == PHYS_MESH;
+}
+
 static void narrow_balls(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     (void)chunk;
     (void)worker;
@@ -123,14 +100,15 @@ static void narrow_balls(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk
     const float *dt = ((void **)ctx)[1];
     CORE_SIMD_SELECT(phys_narrow_balls)(w, begin, end, *dt);
     for (uint32_t i = begin; i < end; i++) {
-        if (w->balls.fixed[i] && phys_mobile(&w->bodies, w->balls.a[i])) {
+        if (w->balls.fixed[i] && phys_mobile(&w->bodies, w->balls.a[i]) &&
+            !on_mesh(w, w->balls.sb[i])) {
             refresh_fixed_ball(w, i, *dt);
         }
     }
 }
 
 // By feature first; a point whose feature is new takes over from the nearest one left.
-static void carry_impulses(const phys_manifold *old, phys_manifold *m) {
+void phys_manifold_carry(const phys_manifold *old, phys_manifold *m) {
     bool used[4] = {false}, done[4] = {false};
     if (m->count != 0) {
         m->friction = old->friction;
@@ -165,20 +143,12 @@ static float quat_dot(core_quat a, core_quat b) {
     return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
 }
 
-// How the pair is seen now: what its last search is compared with.
-typedef struct pair_view {
-    core_quat qa, qb;
-    core_vec3 dc;     // from the centre of a to that of b
-    core_vec3 offset; // centre of the smaller one seen from the larger
-    float extent;     // farthest reach of the smaller one: how far a turn can move its points
-} pair_view;
-
-static pair_view view_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t ra,
-                           uint32_t rb) {
+phys_pair_view phys_view_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t ra,
+                              uint32_t rb) {
     const phys_bodies *b = &w->bodies;
-    pair_view v = {.qa = phys_body_quat(b, ra), .qb = phys_body_quat(b, rb)};
+    phys_pair_view v = {.qa = phys_body_quat(b, ra), .qb = phys_body_quat(b, rb)};
     v.dc = core_v3_sub(phys_get3(b->cx, b->cy, b->cz, rb), phys_get3(b->cx, b->cy, b->cz, ra));
-    float ea = extent_of(&w->shapes, sa), eb = extent_of(&w->shapes, sb);
+    float ea = phys_shape_extent(&w->shapes, sa), eb = phys_shape_extent(&w->shapes, sb);
     v.extent = CORE_MIN(ea, eb);
     v.offset =
         eb > ea ? phys_unrotate(v.qb, core_v3_scale(v.dc, -1.0f)) : phys_unrotate(v.qa, v.dc);
@@ -186,24 +156,25 @@ static pair_view view_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32
 }
 
 // Bound on how far any point moved, seen from the other body, since the last search.
-static float moved_since(const phys_manifold *m, const pair_view *v) {
-    core_quat before = phys_quat_mul(phys_conj(m->qa), m->qb);
+float phys_moved_since(const phys_pair_view *old, const phys_pair_view *v) {
+    core_quat before = phys_quat_mul(phys_conj(old->qa), old->qb);
     core_quat turn = phys_quat_mul(phys_conj(before), phys_quat_mul(phys_conj(v->qa), v->qb));
     float angle = 2.0f * core_v3_length(core_v3(turn.x, turn.y, turn.z));
-    return core_v3_length(core_v3_sub(v->offset, m->offset)) + angle * v->extent;
+    return core_v3_length(core_v3_sub(v->offset, old->offset)) + angle * v->extent;
 }
 
 // Keeps what is known of a pair that hardly moved: one that was apart stays so; of one in touch,
 // anchors and normal stay and only the gaps are renewed (contact recycling, after Catto, Box3D
 // 2026). Besides saving the search, frozen arms keep a loaded stack from swaying: its lever arms do
 // not follow every tremor. False: the pair must be searched.
-static bool recycle(phys_manifold *m, const pair_view *v, float reach) {
+bool phys_manifold_recycle(phys_manifold *m, const phys_pair_view *v, float reach) {
+    phys_pair_view old = {.qa = m->qa, .qb = m->qb, .offset = m->offset};
     if (m->count == 0) {
-        return m->apart > 0.0f && moved_since(m, v) + reach < m->apart;
+        return m->apart > 0.0f && phys_moved_since(&old, v) + reach < m->apart;
     }
     float ca = quat_dot(v->qa, m->qa), cb = quat_dot(v->qb, m->qb);
     if (core_absf(ca) < PHYS_KEEP_COSINE || core_absf(cb) < PHYS_KEEP_COSINE ||
-        moved_since(m, v) > PHYS_KEEP_DISTANCE) {
+        phys_moved_since(&old, v) > PHYS_KEEP_DISTANCE) {
         return false;
     }
     core_quat ta = phys_quat_mul(v->qa, phys_conj(m->qa));
@@ -222,16 +193,16 @@ static void refresh_contact(phys_world *w, uint32_t i, float dt) {
     uint32_t sa = phys_slot_row(&w->shapes.set, c->sa[i]);
     uint32_t sb = phys_slot_row(&w->shapes.set, c->sb[i]);
     uint32_t ra = c->a[i], rb = c->b[i];
-    if (!phys_moves(b, ra) && !phys_moves(b, rb)) {
+    if ((!phys_moves(b, ra) && !phys_moves(b, rb)) || w->shapes.type[sb] == PHYS_MESH) {
         return;
     }
     core_vec3 dv =
         core_v3_sub(phys_get3(b->vx, b->vy, b->vz, ra), phys_get3(b->vx, b->vy, b->vz, rb));
     float spin = core_v3_length(phys_get3(b->wx, b->wy, b->wz, ra)) +
                  core_v3_length(phys_get3(b->wx, b->wy, b->wz, rb));
-    pair_view v = view_pair(w, sa, sb, ra, rb);
+    phys_pair_view v = phys_view_pair(w, sa, sb, ra, rb);
     phys_manifold *old = &c->manifold[i];
-    if (recycle(old, &v, PHYS_MARGIN + (core_v3_length(dv) + spin * v.extent) * dt)) {
+    if (phys_manifold_recycle(old, &v, PHYS_MARGIN + (core_v3_length(dv) + spin * v.extent) * dt)) {
         return;
     }
     phys_manifold m = {.normal = old->normal, .qa = v.qa, .qb = v.qb, .offset = v.offset};
@@ -245,7 +216,7 @@ static void refresh_contact(phys_world *w, uint32_t i, float dt) {
     for (uint32_t k = m.count; k < 4; k++) {
         m.point[k] = (phys_point){0};
     }
-    carry_impulses(old, &m);
+    phys_manifold_carry(old, &m);
     *old = m;
 }
 
@@ -270,6 +241,10 @@ static void refresh_rows(phys_world *w) {
         w->contacts.a[i] = s->row[phys_slot_row(&s->set, w->contacts.sa[i])];
         w->contacts.b[i] = s->row[phys_slot_row(&s->set, w->contacts.sb[i])];
     }
+    for (uint32_t i = 0; i < core_columns_count(&w->mesh_pairs.set); i++) {
+        w->mesh_pairs.a[i] = s->row[phys_slot_row(&s->set, w->mesh_pairs.sa[i])];
+        w->mesh_pairs.b[i] = s->row[phys_slot_row(&s->set, w->mesh_pairs.sb[i])];
+    }
     w->rows_stale = false;
 }
 
@@ -282,6 +257,9 @@ void phys_narrow_update(phys_world *w, float dt) {
     uint32_t contacts = core_columns_count(&w->contacts.set);
     core_jobs_for(w->jobs, balls, NARROW_GRAIN, narrow_balls, ctx);
     core_jobs_for(w->jobs, contacts, NARROW_GRAIN, narrow_contacts, ctx);
+    phys_mesh_pairs_narrow(w, dt);
+    balls = core_columns_count(&w->balls.set);
+    contacts = core_columns_count(&w->contacts.set);
     w->touching = 0;
     uint32_t n = core_columns_count(&w->bodies.set);
     for (uint32_t i = 0; i < n; i++) {

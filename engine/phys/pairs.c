@@ -91,11 +91,51 @@ static bool is_ball(const phys_world *w, uint32_t shape) {
            w->bodies.shape[s->row[shape]] == phys_row_slot(&s->set, shape);
 }
 
-static void mix_material(const phys_shapes *s, uint32_t a, uint32_t b, float *friction,
-                         float *restitution) {
-    *friction = core_sqrtf(s->friction[a] * s->friction[b]);
-    *restitution = CORE_MAX(s->restitution[a], s->restitution[b]);
+void phys_mix_material(float friction_a, float friction_b, float restitution_a, float restitution_b,
+                       float *friction, float *restitution) {
+    *friction = core_sqrtf(friction_a * friction_b);
+    *restitution = CORE_MAX(restitution_a, restitution_b);
 }
+
+static void mix_shapes(const phys_shapes *s, uint32_t a, uint32_t b, float *friction,
+                       float *restitution) {
+    phys_mix_material(s->friction[a], s->friction[b], s->restitution[a], s->restitution[b],
+                      friction, restitution);
+}
+
+uint32_t phys_ball_row_add(phys_world *w, uint32_t sa, uint32_t sb) {
+    const phys_shapes *s = &w->shapes;
+    uint32_t first = phys_slot_row(&s->set, sa), second = phys_slot_row(&s->set, sb);
+    core_handle h = core_columns_add(&w->balls.set);
+    uint32_t i = core_columns_count(&w->balls.set) - 1;
+    bool fixed = w->bodies.type[s->row[second]] != PHYS_DYNAMIC;
+    w->balls.fixed[i] = fixed;
+    w->balls.reach[i] = fixed ? PHYS_APART : s->radius[first] + s->radius[second];
+    w->balls.a[i] = s->row[first];
+    w->balls.b[i] = s->row[second];
+    w->balls.sa[i] = sa;
+    w->balls.sb[i] = sb;
+    w->balls.rolling[i] = CORE_MAX(s->rolling[first], s->rolling[second]);
+    w->balls.stamp[i] = w->stamp;
+    mix_shapes(s, first, second, &w->balls.friction[i], &w->balls.restitution[i]);
+    return h.index;
+}
+
+uint32_t phys_contact_row_add(phys_world *w, uint32_t sa, uint32_t sb) {
+    const phys_shapes *s = &w->shapes;
+    uint32_t first = phys_slot_row(&s->set, sa), second = phys_slot_row(&s->set, sb);
+    core_handle h = core_columns_add(&w->contacts.set);
+    uint32_t i = core_columns_count(&w->contacts.set) - 1;
+    w->contacts.a[i] = s->row[first];
+    w->contacts.b[i] = s->row[second];
+    w->contacts.sa[i] = sa;
+    w->contacts.sb[i] = sb;
+    w->contacts.stamp[i] = w->stamp;
+    mix_shapes(s, first, second, &w->contacts.friction[i], &w->contacts.restitution[i]);
+    return h.index;
+}
+
+enum { KIND_POINTS, KIND_BALL, KIND_MESH };
 
 static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
     const phys_shapes *s = &w->shapes;
@@ -104,33 +144,17 @@ static void contact_add(phys_world *w, uint32_t slot_a, uint32_t slot_b) {
                 (s->type[a] == s->type[b] && w->bodies.type[s->row[a]] != PHYS_DYNAMIC);
     uint32_t first = swap ? b : a, second = swap ? a : b;
     uint32_t sa = phys_row_slot(&s->set, first), sb = phys_row_slot(&s->set, second);
-    uint64_t key = pair_key(slot_a, slot_b);
-    if (w->bodies.type[s->row[first]] == PHYS_DYNAMIC && is_ball(w, first) &&
-        (w->bodies.type[s->row[second]] == PHYS_STATIC || is_ball(w, second))) {
-        core_handle h = core_columns_add(&w->balls.set);
-        uint32_t i = core_columns_count(&w->balls.set) - 1;
-        bool fixed = w->bodies.type[s->row[second]] != PHYS_DYNAMIC;
-        w->balls.fixed[i] = fixed;
-        w->balls.reach[i] = fixed ? PHYS_APART : s->radius[first] + s->radius[second];
-        w->balls.a[i] = s->row[first];
-        w->balls.b[i] = s->row[second];
-        w->balls.sa[i] = sa;
-        w->balls.sb[i] = sb;
-        w->balls.rolling[i] = CORE_MAX(s->rolling[first], s->rolling[second]);
-        w->balls.stamp[i] = w->stamp;
-        mix_material(s, first, second, &w->balls.friction[i], &w->balls.restitution[i]);
-        map_add(&w->map, key, h.index << 1 | 1u);
-    } else {
-        core_handle h = core_columns_add(&w->contacts.set);
-        uint32_t i = core_columns_count(&w->contacts.set) - 1;
-        w->contacts.a[i] = s->row[first];
-        w->contacts.b[i] = s->row[second];
-        w->contacts.sa[i] = sa;
-        w->contacts.sb[i] = sb;
-        w->contacts.stamp[i] = w->stamp;
-        mix_material(s, first, second, &w->contacts.friction[i], &w->contacts.restitution[i]);
-        map_add(&w->map, key, h.index << 1);
-    }
+    bool ball = w->bodies.type[s->row[first]] == PHYS_DYNAMIC && is_ball(w, first) &&
+                (w->bodies.type[s->row[second]] == PHYS_STATIC || is_ball(w, second));
+    uint32_t value = s->type[second] == PHYS_MESH
+                         ? phys_mesh_pair_add(w, sa, sb, ball) << 2 | KIND_MESH
+                     : ball ? phys_ball_row_add(w, sa, sb) << 2 | KIND_BALL
+                            : phys_contact_row_add(w, sa, sb) << 2 | KIND_POINTS;
+    map_add(&w->map, pair_key(slot_a, slot_b), value);
+}
+
+static bool on_mesh(const phys_world *w, uint32_t shape_slot) {
+    return w->shapes.type[phys_slot_row(&w->shapes.set, shape_slot)] == PHYS_MESH;
 }
 
 static void ball_remove(phys_world *w, uint32_t row, phys_event_list *events) {
@@ -149,6 +173,15 @@ static void manifold_remove(phys_world *w, uint32_t row, phys_event_list *events
     }
     map_remove(&w->map, pair_key(c->sa[row], c->sb[row]));
     core_columns_remove(&c->set, core_columns_handle(&c->set, row), NULL, NULL);
+}
+
+static void mesh_pair_remove(phys_world *w, uint32_t row, phys_event_list *events) {
+    phys_mesh_pairs *p = &w->mesh_pairs;
+    if (p->touch[row]) {
+        phys_events_contact_end(w, events, p->sa[row], p->sb[row]);
+    }
+    map_remove(&w->map, pair_key(p->sa[row], p->sb[row]));
+    phys_mesh_pair_remove(w, row);
 }
 
 // Bottom-up merge sort of keys: no allocation, one order.
@@ -180,13 +213,20 @@ static bool pair_lives(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t s
 }
 
 static void remove_parted(phys_world *w) {
+    for (uint32_t i = core_columns_count(&w->mesh_pairs.set); i-- > 0;) {
+        if (!pair_lives(w, w->mesh_pairs.sa[i], w->mesh_pairs.sb[i], w->mesh_pairs.stamp[i])) {
+            mesh_pair_remove(w, i, &w->events);
+        }
+    }
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
-        if (!pair_lives(w, w->balls.sa[i], w->balls.sb[i], w->balls.stamp[i])) {
+        if (!pair_lives(w, w->balls.sa[i], w->balls.sb[i], w->balls.stamp[i]) &&
+            !on_mesh(w, w->balls.sb[i])) {
             ball_remove(w, i, &w->events);
         }
     }
     for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
-        if (!pair_lives(w, w->contacts.sa[i], w->contacts.sb[i], w->contacts.stamp[i])) {
+        if (!pair_lives(w, w->contacts.sa[i], w->contacts.sb[i], w->contacts.stamp[i]) &&
+            !on_mesh(w, w->contacts.sb[i])) {
             manifold_remove(w, i, &w->events);
         }
     }
@@ -211,11 +251,13 @@ void phys_pairs_update(phys_world *w) {
             continue;
         }
         uint32_t value = w->map.value[at];
-        if (value & 1u) {
-            w->balls.stamp[phys_slot_row(&w->balls.set, value >> 1)] = w->stamp;
-        } else {
-            w->contacts.stamp[phys_slot_row(&w->contacts.set, value >> 1)] = w->stamp;
-        }
+        uint32_t *stamp = (value & 3u) == KIND_BALL   ? w->balls.stamp
+                          : (value & 3u) == KIND_MESH ? w->mesh_pairs.stamp
+                                                      : w->contacts.stamp;
+        const core_columns *set = (value & 3u) == KIND_BALL   ? &w->balls.set
+                                  : (value & 3u) == KIND_MESH ? &w->mesh_pairs.set
+                                                              : &w->contacts.set;
+        stamp[phys_slot_row(set, value >> 2)] = w->stamp;
     }
     if (w->any_moved || !w->broad->partial) {
         remove_parted(w);
@@ -235,6 +277,12 @@ static void wake_partners(phys_world *w, uint32_t sa, uint32_t sb) {
 }
 
 void phys_pairs_drop_shape(phys_world *w, uint32_t slot) {
+    for (uint32_t i = core_columns_count(&w->mesh_pairs.set); i-- > 0;) {
+        if (w->mesh_pairs.sa[i] == slot || w->mesh_pairs.sb[i] == slot) {
+            wake_partners(w, w->mesh_pairs.sa[i], w->mesh_pairs.sb[i]);
+            mesh_pair_remove(w, i, &w->pending);
+        }
+    }
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
         if (w->balls.sa[i] == slot || w->balls.sb[i] == slot) {
             wake_partners(w, w->balls.sa[i], w->balls.sb[i]);
@@ -254,13 +302,21 @@ void phys_pairs_rebuild_map(phys_world *w) {
     if (w->map.capacity != 0) {
         memset(w->map.key, 0, w->map.capacity * sizeof(uint64_t));
     }
+    for (uint32_t i = 0; i < core_columns_count(&w->mesh_pairs.set); i++) {
+        map_add(&w->map, pair_key(w->mesh_pairs.sa[i], w->mesh_pairs.sb[i]),
+                phys_row_slot(&w->mesh_pairs.set, i) << 2 | KIND_MESH);
+    }
     for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
-        map_add(&w->map, pair_key(w->balls.sa[i], w->balls.sb[i]),
-                phys_row_slot(&w->balls.set, i) << 1 | 1u);
+        if (!on_mesh(w, w->balls.sb[i])) {
+            map_add(&w->map, pair_key(w->balls.sa[i], w->balls.sb[i]),
+                    phys_row_slot(&w->balls.set, i) << 2 | KIND_BALL);
+        }
     }
     for (uint32_t i = 0; i < core_columns_count(&w->contacts.set); i++) {
-        map_add(&w->map, pair_key(w->contacts.sa[i], w->contacts.sb[i]),
-                phys_row_slot(&w->contacts.set, i) << 1);
+        if (!on_mesh(w, w->contacts.sb[i])) {
+            map_add(&w->map, pair_key(w->contacts.sa[i], w->contacts.sb[i]),
+                    phys_row_slot(&w->contacts.set, i) << 2 | KIND_POINTS);
+        }
     }
 }
 

@@ -61,6 +61,11 @@ size_t phys_world_bytes(const phys_world *world);
 // Fills counts bodies, awake, shapes, pairs, contacts, joints, islands, triggers.
 void phys_world_counts(const phys_world *world, core_metrics *metrics);
 
+typedef struct phys_material {
+    float friction;    // >= 0
+    float restitution; // [0, 1]
+} phys_material;
+
 typedef struct phys_shape_desc {
     phys_shape_type type;
     core_vec3 half;      // box: half extents > 0 (m)
@@ -69,8 +74,13 @@ typedef struct phys_shape_desc {
     core_vec3 normal;    // plane: unit normal, plane through the body's origin
     const float *points; // hull: [point_count*3] (m), copied
     uint32_t point_count;
-    const core_soup_data *mesh; // static bodies only, copied
-    core_vec3 position;         // in the body's frame
+    // Mesh: of static bodies only, copied; at most 2^24 triangles, places within 1e6 m. Neighbours
+    // are found by equal corners. Triangles without an area are left out.
+    const core_soup_data *mesh;
+    bool one_sided;                 // mesh: what comes from behind passes; default: both sides stop
+    const phys_material *materials; // mesh: [material_count] by the soup's area; areas beyond, or
+    uint32_t material_count;        // without one, have the material below
+    core_vec3 position;             // in the body's frame
     core_quat rotation;
     float density;     // kg/m^3, > 0; 0 = 1000
     float friction;    // >= 0, default 0.5; set by phys_shape_desc_default
@@ -207,6 +217,7 @@ typedef struct phys_hit {
     phys_body body;
     core_vec3 point, normal; // world; the normal leaves the body
     float fraction;          // of the way in [0, 1]; closest: distance (m)
+    uint32_t triangle;       // ray on a mesh: its number in the soup; else UINT32_MAX
 } phys_hit;
 // Nearest body on the way from `from` to `from + way`. A ray that starts inside hits at 0. filter
 // may be NULL. False: nothing, out->hit false (also for bad input, with core_fail).

@@ -1,6 +1,6 @@
 // Questions to the world between steps: rays, shape casts, overlaps, closest points. They change
 // nothing and see bodies where they are now.
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 #include <string.h>
 
@@ -53,7 +53,8 @@ static phys_geom_ray_hit ray_plane(const phys_geom *g, core_vec3 o, core_vec3 d,
     return hit;
 }
 
-static phys_geom_ray_hit ray_shape(const phys_geom *g, core_vec3 o, core_vec3 d, float t_max) {
+static phys_geom_ray_hit ray_shape(const phys_geom *g, core_vec3 o, core_vec3 d, float t_max,
+                                   uint32_t *triangle) {
     core_vec3 arm = core_v3_scale(phys_mat_col(&g->axes, 1), g->half_height);
     switch (g->type) {
     case PHYS_SPHERE:
@@ -62,6 +63,8 @@ static phys_geom_ray_hit ray_shape(const phys_geom *g, core_vec3 o, core_vec3 d,
         return phys_geom_ray_box(o, d, t_max, g->half, g->position, g->rotation);
     case PHYS_PLANE:
         return ray_plane(g, o, d, t_max);
+    case PHYS_MESH:
+        return phys_mesh_ray(g, o, d, t_max, triangle);
     case PHYS_CAPSULE:
         return phys_geom_ray_capsule(o, d, t_max, core_v3_sub(g->position, arm),
                                      core_v3_add(g->position, arm), g->radius);
@@ -110,10 +113,12 @@ bool phys_world_ray(phys_world *w, core_vec3 from, core_vec3 way, const phys_fil
             continue;
         }
         phys_geom g = phys_shape_geom(w, c.row[k]);
-        phys_geom_ray_hit h = ray_shape(&g, from, way, 1.0f);
+        uint32_t triangle = 0;
+        phys_geom_ray_hit h = ray_shape(&g, from, way, 1.0f, &triangle);
         if (h.hit && nearer(w, h.t, row, out)) {
-            *out =
-                (phys_hit){true, core_columns_handle(&w->bodies.set, row), h.point, h.normal, h.t};
+            *out = (phys_hit){true,    core_columns_handle(&w->bodies.set, row),
+                              h.point, h.normal,
+                              h.t,     g.mesh != NULL ? g.mesh->origin[triangle] : UINT32_MAX};
         }
     }
     core_arena_rewind(&w->scratch, mark);
@@ -123,7 +128,7 @@ bool phys_world_ray(phys_world *w, core_vec3 from, core_vec3 way, const phys_fil
 // A shape of a question: any but plane, hull and mesh.
 static bool probe_geom(const char *what, const phys_shape_desc *s, core_vec3 position,
                        core_quat rotation, phys_geom *out) {
-    if (s->type == PHYS_PLANE || s->type == PHYS_HULL) {
+    if (s->type == PHYS_PLANE || s->type == PHYS_HULL || s->type == PHYS_MESH) {
         return core_fail("phys %s: shape %d, expected sphere, box, capsule or cylinder", what,
                          (int)s->type);
     }
@@ -162,8 +167,9 @@ bool phys_world_cast(phys_world *w, const phys_shape_desc *shape, core_vec3 from
         phys_manifold m = {0};
         phys_collide(&at, &still.geom, PHYS_MARGIN + gap, &m);
         core_vec3 point = m.count ? m.point[0].ra : at.position;
-        *out = (phys_hit){true, core_columns_handle(&w->bodies.set, row), point,
-                          core_v3_scale(n, -1.0f), t};
+        *out = (phys_hit){true,  core_columns_handle(&w->bodies.set, row),
+                          point, core_v3_scale(n, -1.0f),
+                          t,     UINT32_MAX};
     }
     core_arena_rewind(&w->scratch, mark);
     return out->hit;
@@ -223,8 +229,12 @@ bool phys_world_closest(phys_world *w, core_vec3 point, float reach, const phys_
         core_vec3 n;
         float d = CORE_MAX(phys_separation(&probe, &g, &n), 0.0f);
         if (d <= reach && nearer(w, d, row, out)) {
-            *out = (phys_hit){true, core_columns_handle(&w->bodies.set, row),
-                              core_v3_mad(point, n, d), core_v3_scale(n, -1.0f), d};
+            *out = (phys_hit){true,
+                              core_columns_handle(&w->bodies.set, row),
+                              core_v3_mad(point, n, d),
+                              core_v3_scale(n, -1.0f),
+                              d,
+                              UINT32_MAX};
         }
     }
     core_arena_rewind(&w->scratch, mark);
@@ -279,12 +289,24 @@ uint32_t phys_world_touch(phys_world *w, const phys_shape_desc *shape, core_vec3
     uint32_t count = 0;
     for (uint32_t k = 0; k < c.count; k++) {
         phys_geom g = phys_shape_geom(w, c.row[k]);
-        phys_touch t = {.body = core_columns_handle(&w->bodies.set, row_order(w, c.row[k]))};
-        t.gap = phys_closest_on(&probe, &g, &t.normal, &t.point);
-        t.normal = core_v3_scale(t.normal, -1.0f);
-        if (t.gap <= reach) {
+        phys_body body = core_columns_handle(&w->bodies.set, row_order(w, c.row[k]));
+        core_vec3 normal[PHYS_PARTS], point[PHYS_PARTS];
+        float gap[PHYS_PARTS];
+        uint32_t n = 1;
+        if (g.type == PHYS_MESH) { // as many as there are sides to it
+            n = phys_mesh_touches(&probe, &g, reach, normal, point, gap);
+        } else {
+            gap[0] = phys_closest_on(&probe, &g, &normal[0], &point[0]);
+        }
+        for (uint32_t i = 0; i < n; i++) {
+            if (gap[i] > reach) {
+                continue;
+            }
             if (count < capacity) {
-                out[count] = t;
+                out[count] = (phys_touch){.body = body,
+                                          .point = point[i],
+                                          .normal = core_v3_scale(normal[i], -1.0f),
+                                          .gap = gap[i]};
             }
             count++;
         }

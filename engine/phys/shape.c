@@ -1,5 +1,5 @@
 // Shapes: what a description must fulfil, mass and inertia, bounds.
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 CORE_COLUMNS_DEFINE(phys_shapes, PHYS_SHAPE_COLUMNS)
 
@@ -47,9 +47,9 @@ bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {
     if (s->cookie != PHYS_SHAPE_COOKIE) {
         return core_fail("phys shape: description was not made by phys_shape_desc_default");
     }
-    if ((unsigned)s->type > PHYS_HULL) {
-        return core_fail("phys shape: type %d, expected sphere, box, plane, capsule, cylinder or "
-                         "hull",
+    if ((unsigned)s->type > PHYS_MESH) {
+        return core_fail("phys shape: type %d, expected sphere, box, plane, capsule, cylinder, "
+                         "hull or mesh",
                          (int)s->type);
     }
     const char *name = shape_names[s->type];
@@ -80,6 +80,11 @@ bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {
         if (s->points == NULL || s->point_count < 4 || s->point_count > PHYS_HULL_POINTS) {
             return core_fail("phys shape hull: %u points, expected 4..%u", s->point_count,
                              PHYS_HULL_POINTS);
+        }
+        break;
+    case PHYS_MESH: // the triangles are checked when they are taken over
+        if (body != PHYS_STATIC) {
+            return core_fail("phys shape mesh: only static bodies can have one; use hulls");
         }
         break;
     default:
@@ -223,7 +228,11 @@ phys_geom phys_shape_geom(const phys_world *w, uint32_t i) {
     phys_geom g =
         phys_geom_make((phys_shape_type)s->type[i], core_v3_add(o, phys_rotate(q, s->position[i])),
                        phys_quat_mul(q, s->rotation[i]), s->half[i], s->radius[i]);
-    g.hull = s->hull[i] ? &w->hulls[s->hull[i] - 1].hull : NULL;
+    if (s->type[i] == PHYS_MESH) {
+        g.mesh = phys_mesh_at(w, s->hull[i]);
+    } else if (s->hull[i] != 0) {
+        g.hull = &w->hulls[s->hull[i] - 1].hull;
+    }
     return g;
 }
 
@@ -266,6 +275,13 @@ core_aabb phys_geom_bounds(const phys_geom *g) {
     case PHYS_HULL:
         return phys_geom_bounds_convex(g->hull->vertex, g->hull->vertex_count, g->position,
                                        g->rotation);
+    case PHYS_MESH: {
+        core_aabb box = phys_mesh_bounds(g->mesh);
+        core_vec3 half = core_v3_scale(core_v3_sub(box.max, box.min), 0.5f);
+        core_vec3 middle = core_v3_scale(core_v3_add(box.max, box.min), 0.5f);
+        return phys_geom_bounds_box(half, core_v3_add(g->position, phys_mat_mul(&g->axes, middle)),
+                                    g->rotation);
+    }
     default:
         break;
     }

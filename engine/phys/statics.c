@@ -1,6 +1,6 @@
 // The world as geometry: shapes one by one, their surfaces as triangles, and where static ones
 // changed, so that others (navigation) can follow without knowing this room's storage.
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 static void note_shape(phys_static_log *log, const phys_geom *g) {
     core_aabb box = phys_geom_bounds(g);
@@ -64,7 +64,12 @@ bool phys_world_shape(const phys_world *w, uint32_t row, phys_shape_view *out) {
     out->radius = g.radius;
     out->half_height = g.type == PHYS_CAPSULE || g.type == PHYS_CYLINDER ? g.half_height : 0.0f;
     out->bounds = phys_geom_bounds(&g);
-    if (g.hull != NULL) {
+    if (g.mesh != NULL) {
+        out->vertex_count = g.mesh->vertex_count;
+        out->triangle_count = g.mesh->triangle_count;
+        out->vertex = g.mesh->vertex;
+        out->index = g.mesh->index;
+    } else if (g.hull != NULL) {
         out->vertex_count = g.hull->vertex_count;
         out->face_count = g.hull->face_count;
         out->vertex = g.hull->vertex;

@@ -82,6 +82,7 @@ static bool make_storage(phys_world *w, uint32_t max_bodies) {
            phys_shapes_init(&w->shapes, "phys.shapes", max_bodies * 2) &&
            phys_balls_init(&w->balls, "phys.balls", pairs) &&
            phys_contacts_init(&w->contacts, "phys.contacts", pairs) &&
+           phys_mesh_pairs_init(&w->mesh_pairs, "phys.mesh_pairs", pairs) &&
            phys_joints_init(&w->joints, "phys.joints", 1u << 20) &&
            phys_triggers_init(&w->triggers, "phys.triggers", 1u << 16) &&
            phys_visits_init(&w->visits, "phys.visits", 1u << 20) &&
@@ -127,6 +128,7 @@ void phys_world_destroy(phys_world *w) {
     core_columns_release(&w->shapes.set);
     core_columns_release(&w->balls.set);
     core_columns_release(&w->contacts.set);
+    core_columns_release(&w->mesh_pairs.set);
     core_columns_release(&w->joints.set);
     core_free(w->joint_pairs.key);
     core_columns_release(&w->triggers.set);
@@ -136,6 +138,7 @@ void phys_world_destroy(phys_world *w) {
     core_arena_release(&w->scratch);
     phys_pairs_release(w);
     phys_hulls_release(w);
+    phys_meshes_release(w);
     phys_trees_release(w);
     core_free(w);
 }
@@ -326,9 +329,9 @@ bool phys_world_step(phys_world *w, float dt) {
 }
 
 void phys_world_sets(phys_world *w, core_columns *set[PHYS_SETS]) {
-    core_columns *all[PHYS_SETS] = {&w->bodies.set,   &w->shapes.set, &w->balls.set,
-                                    &w->contacts.set, &w->joints.set, &w->triggers.set,
-                                    &w->visits.set,   &w->fields.set, &w->movers.set};
+    core_columns *all[PHYS_SETS] = {
+        &w->bodies.set,   &w->shapes.set, &w->balls.set,  &w->contacts.set, &w->joints.set,
+        &w->triggers.set, &w->visits.set, &w->fields.set, &w->movers.set,   &w->mesh_pairs.set};
     memcpy(set, all, sizeof all);
 }
 
@@ -344,6 +347,7 @@ int phys_world_state(const phys_world *w, const core_columns **out, int capacity
 size_t phys_world_bytes(const phys_world *w) {
     return sizeof *w + core_columns_bytes(&w->bodies.set) + core_columns_bytes(&w->shapes.set) +
            core_columns_bytes(&w->balls.set) + core_columns_bytes(&w->contacts.set) +
+           core_columns_bytes(&w->mesh_pairs.set) + phys_meshes_bytes(w) +
            core_columns_bytes(&w->joints.set) + w->joint_pairs.capacity * sizeof(uint64_t) +
            core_columns_bytes(&w->triggers.set) + core_columns_bytes(&w->visits.set) +
            core_columns_bytes(&w->fields.set) + core_columns_bytes(&w->movers.set) +

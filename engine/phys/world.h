@@ -99,7 +99,7 @@ CORE_COLUMNS_DECLARE(phys_bodies, PHYS_BODY_COLUMNS)
     X(uint32_t, body, CORE_COLUMN_STATE)                                                           \
     X(uint32_t, next, CORE_COLUMN_STATE)                                                           \
     X(uint32_t, type, CORE_COLUMN_STATE)                                                           \
-    X(uint32_t, hull, CORE_COLUMN_STATE) /* number in the world's list, from 1; 0: none */         \
+    X(uint32_t, hull, CORE_COLUMN_STATE) /* number in the list of hulls, or meshes, from 1 */      \
     X(core_vec3, half, CORE_COLUMN_STATE)                                                          \
     X(float, radius, CORE_COLUMN_STATE)                                                            \
     X(core_vec3, position, CORE_COLUMN_STATE)                                                      \
@@ -176,6 +176,31 @@ CORE_COLUMNS_DECLARE(phys_balls, PHYS_BALL_COLUMNS)
     X(uint32_t, stamp, 0)
 CORE_COLUMNS_DECLARE(phys_contacts, PHYS_CONTACT_COLUMNS)
 
+// A shape near a mesh: owns as many rows of the two sets above as there are directions in which it
+// is touched. touch: some of them touch. qa..offset, searched: how the pair was when it was last
+// looked at, and how far around.
+#define PHYS_MESH_PARTS 8u
+typedef struct phys_mesh_rows {
+    uint32_t slot[PHYS_MESH_PARTS];
+} phys_mesh_rows;
+#define PHYS_MESH_PAIR_COLUMNS(X)                                                                  \
+    X(uint32_t, sa, CORE_COLUMN_STATE)                                                             \
+    X(uint32_t, sb, CORE_COLUMN_STATE)                                                             \
+    X(uint8_t, ball, CORE_COLUMN_STATE)                                                            \
+    X(uint8_t, touch, CORE_COLUMN_STATE)                                                           \
+    X(uint8_t, count, CORE_COLUMN_STATE) /* rows owned */                                          \
+    X(uint8_t, used, CORE_COLUMN_STATE)  /* rows that hold something */                            \
+    X(phys_mesh_rows, rows, CORE_COLUMN_STATE)                                                     \
+    X(core_quat, qa, CORE_COLUMN_STATE)                                                            \
+    X(core_quat, qb, CORE_COLUMN_STATE)                                                            \
+    X(core_vec3, offset, CORE_COLUMN_STATE)                                                        \
+    X(float, searched, CORE_COLUMN_STATE)                                                          \
+    X(uint8_t, wanted, 0)                                                                          \
+    X(uint32_t, a, 0)                                                                              \
+    X(uint32_t, b, 0)                                                                              \
+    X(uint32_t, stamp, 0)
+CORE_COLUMNS_DECLARE(phys_mesh_pairs, PHYS_MESH_PAIR_COLUMNS)
+
 // layers: bit per layer seen, never 0.
 #define PHYS_TRIGGER_COLUMNS(X)                                                                    \
     X(uint32_t, type, CORE_COLUMN_STATE)                                                           \
@@ -210,7 +235,7 @@ typedef struct phys_event_list {
 // needed.
 typedef struct phys_pair_map {
     uint64_t *key;   // slot a << 32 | slot b, a < b; 0: empty
-    uint32_t *value; // contact slot << 1 | kind (1: ball)
+    uint32_t *value; // contact slot << 2 | kind (0: points, 1: ball, 2: mesh)
     uint32_t capacity, count;
 } phys_pair_map;
 
@@ -265,10 +290,13 @@ struct phys_world {
     phys_shapes shapes;
     phys_balls balls;
     phys_contacts contacts;
+    phys_mesh_pairs mesh_pairs;
     phys_joints joints;
     phys_joint_pairs joint_pairs;
     struct phys_hull_entry *hulls; // shared by shapes with equal points
     uint32_t hull_count, hull_capacity;
+    struct phys_mesh_entry *meshes; // shared likewise
+    uint32_t mesh_count, mesh_capacity;
     phys_triggers triggers;
     phys_visits visits;
     phys_fields fields;
@@ -308,6 +336,7 @@ typedef struct phys_geom {
     core_vec3 half;
     float radius, half_height; // capsule, cylinder: along the local y axis
     const phys_geom_hull *hull;
+    const struct phys_mesh *mesh;
 } phys_geom;
 
 extern const phys_broad_method phys_broad_brute, phys_broad_sap, phys_broad_tree;
@@ -351,7 +380,7 @@ static inline core_vec3 phys_lock_turn(uint8_t locks, core_vec3 w) {
 }
 
 // world.c: the sets of state, in the order of hashes and snapshots.
-enum { PHYS_SETS = 9 };
+enum { PHYS_SETS = 10 };
 void phys_world_sets(phys_world *world, core_columns *set[PHYS_SETS]);
 
 // shape.c
@@ -397,6 +426,35 @@ void phys_pairs_update(phys_world *world);
 void phys_pairs_drop_shape(phys_world *world, uint32_t shape_slot);
 void phys_pairs_release(phys_world *world);
 void phys_pairs_rebuild_map(phys_world *world);
+uint32_t phys_ball_row_add(phys_world *world, uint32_t sa, uint32_t sb);    // slots of shapes, of
+uint32_t phys_contact_row_add(phys_world *world, uint32_t sa, uint32_t sb); // the new row
+void phys_mix_material(float friction_a, float friction_b, float restitution_a, float restitution_b,
+                       float *friction, float *restitution);
+
+// narrow.c: how a pair is seen now, which its last search is compared with.
+typedef struct phys_pair_view {
+    core_quat qa, qb;
+    core_vec3 dc;     // from the centre of a to that of b
+    core_vec3 offset; // centre of the smaller one seen from the larger
+    float extent;     // farthest reach of the smaller one: how far a turn can move its points
+} phys_pair_view;
+phys_pair_view phys_view_pair(const phys_world *w, uint32_t shape_a, uint32_t shape_b,
+                              uint32_t row_a, uint32_t row_b);
+// Bound on how far any point moved, seen from the other body, since the last search.
+float phys_moved_since(const phys_pair_view *old, const phys_pair_view *now);
+bool phys_manifold_recycle(phys_manifold *m, const phys_pair_view *v, float reach);
+void phys_manifold_carry(const phys_manifold *old, phys_manifold *m);
+float phys_shape_extent(const phys_shapes *s, uint32_t shape);
+// mesh_pairs.c
+uint32_t phys_mesh_pair_add(phys_world *world, uint32_t sa, uint32_t sb, bool ball); // its slot
+void phys_mesh_pair_remove(phys_world *world, uint32_t row);
+void phys_mesh_pairs_narrow(phys_world *world, float dt);
+// meshes.c: as for hulls.
+uint32_t phys_mesh_share(phys_world *world, const phys_shape_desc *shape);
+void phys_mesh_leave(phys_world *world, uint32_t number);
+void phys_meshes_release(phys_world *world);
+size_t phys_meshes_bytes(const phys_world *world);
+const struct phys_mesh *phys_mesh_at(const phys_world *world, uint32_t number);
 
 // narrow.c, collide*.c: out->count points closer than the margin; features and impulses are set by
 // the caller. a.type <= b.type in the order of phys_shape_type.
@@ -417,10 +475,18 @@ typedef struct phys_moving {
     float extent;
 } phys_moving;
 phys_geom phys_moving_at(const phys_moving *m, float t);
+phys_moving phys_shape_moving(const phys_world *w, uint32_t shape, uint32_t row); // narrow.c
 // First time in [0, dt] at which they touch. Conservative advancement; see sweep.c.
 bool phys_sweep(const phys_moving *a, const phys_moving *b, float dt, float *time);
 
+// Contact of two shapes that meet at time t, found there with anchors at the place of then: anchors
+// and gaps become those of now, the gaps less what the motion closes until then.
+void phys_swept_points(const phys_moving *a, const phys_moving *b, float t, phys_manifold *m);
+
 void phys_collide_convex(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
+// With the face of `flat` along n, whatever else would part them sooner.
+void phys_collide_face(const phys_geom *flat, const phys_geom *b, core_vec3 n, float margin,
+                       phys_manifold *m);
 void phys_collide_plane(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 void phys_collide_box_box(const phys_geom *a, const phys_geom *b, float margin, phys_manifold *out);
 
