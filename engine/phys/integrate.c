@@ -40,7 +40,7 @@ void phys_integrate_velocity(phys_world *w, float h) {
     }
 }
 
-static void put_quat(phys_bodies *b, uint32_t i, core_quat q) {
+void phys_put_quat(phys_bodies *b, uint32_t i, core_quat q) {
     q = phys_quat_unit(q);
     b->qx[i] = q.x;
     b->qy[i] = q.y;
@@ -57,7 +57,7 @@ static void turn_isotropic(phys_bodies *b, uint32_t i, float h) {
     float s, c;
     half_turn(0.5f * h * speed, &s, &c);
     core_vec3 u = core_v3_scale(o, s / speed);
-    put_quat(b, i, phys_quat_mul((core_quat){u.x, u.y, u.z, c}, phys_body_quat(b, i)));
+    phys_put_quat(b, i, phys_quat_mul((core_quat){u.x, u.y, u.z, c}, phys_body_quat(b, i)));
 }
 
 // Turns the frame about one of its own axes by h L / I and the momentum, seen from the frame, back.
@@ -117,7 +117,7 @@ void phys_integrate_rotation(phys_bodies *b, uint32_t i, float h) {
     }
     o = rotate_exact(q, core_v3(l.x * inv.x, l.y * inv.y, l.z * inv.z));
     phys_put3(b->wx, b->wy, b->wz, i, o);
-    put_quat(b, i, framed ? phys_quat_mul(q, phys_conj(b->iq[i])) : q);
+    phys_put_quat(b, i, framed ? phys_quat_mul(q, phys_conj(b->iq[i])) : q);
 }
 
 core_quat phys_turned(core_quat q, core_vec3 turn) {
@@ -130,23 +130,40 @@ core_quat phys_turned(core_quat q, core_vec3 turn) {
     return phys_quat_mul((core_quat){u.x, u.y, u.z, c}, q);
 }
 
+// Whether a body turns about anything but a principal axis: else its angular velocity stays.
+static bool precesses(const phys_bodies *b, uint32_t i) {
+    core_quat q = phys_body_quat(b, i);
+    q = b->flags[i] & PHYS_BODY_FRAME ? phys_quat_mul(q, b->iq[i]) : q;
+    core_vec3 w = phys_rotate(phys_conj(q), phys_get3(b->wx, b->wy, b->wz, i));
+    core_vec3 l = core_v3(w.x / b->ix[i], w.y / b->iy[i], w.z / b->iz[i]), t = core_v3_cross(w, l);
+    return core_v3_dot(t, t) > 1e-12f * core_v3_dot(w, w) * core_v3_dot(l, l);
+}
+
+static bool is_round(const phys_bodies *b, uint32_t i) {
+    return (b->flags[i] & PHYS_BODY_ISOTROPIC) != 0 || b->type[i] != PHYS_DYNAMIC ||
+           (b->locks[i] & PHYS_LOCK_TURN) != 0;
+}
+
+void phys_finish_precession(phys_bodies *b, uint32_t i, float dt) {
+    if (!is_round(b, i) && precesses(b, i)) {
+        core_quat q = phys_body_quat(b, i);
+        phys_integrate_rotation(b, i, dt);
+        phys_put_quat(b, i, q);
+    }
+}
+
 // Ends a step: `turn` is the sum of the substeps' angular velocity times h. A free body turns by
 // the splitting above in quarters of the step; a touched one by its turn, while its angular
 // velocity follows the gyroscopic term.
 void phys_finish_rotation(phys_bodies *b, uint32_t i, core_vec3 turn, float dt, bool free) {
-    bool round = (b->flags[i] & PHYS_BODY_ISOTROPIC) != 0 || b->type[i] != PHYS_DYNAMIC ||
-                 (b->locks[i] & PHYS_LOCK_TURN) != 0;
-    if (free && !round) {
+    if (free && !is_round(b, i)) {
         for (int k = 0; k < 4; k++) {
             phys_integrate_rotation(b, i, 0.25f * dt);
         }
         return;
     }
-    core_quat q = phys_body_quat(b, i);
-    if (!round) {
-        phys_integrate_rotation(b, i, dt);
-    }
-    put_quat(b, i, phys_turned(q, turn));
+    phys_finish_precession(b, i, dt);
+    phys_put_quat(b, i, phys_turned(phys_body_quat(b, i), turn));
 }
 
 typedef struct pull {
@@ -179,7 +196,7 @@ void phys_integrate_free(phys_world *w, uint32_t i, float dt, int substeps) {
     phys_put3(b->vx, b->vy, b->vz, i, m.v);
     phys_put3(b->wx, b->wy, b->wz, i,
               core_v3_scale(m.w, 1.0f / (1.0f + b->angular_damping[i] * dt)));
-    put_quat(b, i, phys_quat_mul(m.q, phys_conj(b->iq[i])));
+    phys_put_quat(b, i, phys_quat_mul(m.q, phys_conj(b->iq[i])));
 }
 
 void phys_clear_forces(phys_world *w) {

@@ -18,12 +18,24 @@
 #define SLENDER_RATIO    4.0f // height over width along gravity
 #define SLENDER_BODIES   8u
 #define CHAIN_JOINTS     16u // trees of at least as many joints: they swing and whip
+// Substeps of a chain over the fastest turning that it has to follow, 1/(s/s). Its links tremble
+// with the tension: a link under tension T, with arms r and a moment of inertia I, at the rate
+// sqrt(2 T r / I); a substep longer than about 1 over that feeds the trembling.
+#define CHAIN_SUBSTEPS 0.5f
+#define CHAIN_MANY     8u // shorter ones cost too little to save substeps
+
+// Joints of a body: how many, whether all are plain ball joints, tension times arm (N m).
+typedef struct hold {
+    uint32_t joints, count, anchors; // count: those on this body, `joints` those it comes first in
+    float pull;
+    bool other;
+} hold;
 
 typedef struct island {
     core_vec3 lo, hi;
-    float ratio;
-    uint32_t count, joints;
-    bool restless;
+    float ratio, rate; // rate: squared, 1/s^2
+    uint32_t count, joints, anchors;
+    bool restless, touched, branched;
 } island;
 
 static uint32_t find_root(uint32_t *parent, uint32_t i) {
@@ -124,16 +136,39 @@ static void note_pair(const phys_bodies *b, uint32_t *parent, float *ratio, uint
     ratio[i] = CORE_MAX(ratio[i], r);
 }
 
-static void gather_pairs(phys_world *w, uint32_t *parent, float *ratio, uint32_t *joints) {
+static void note_hold(const phys_world *w, hold *h, uint32_t joint, bool on_b) {
+    const phys_joints *j = &w->joints;
+    core_vec3 arm = on_b ? j->lb[joint] : j->la[joint];
+    h->count++;
+    h->pull += core_v3_length(j->force[joint]) * core_v3_length(arm);
+    h->other |= j->type[joint] != PHYS_JOINT_BALL || j->cone[joint] > 0.0f ||
+                (j->flags[joint] & (PHYS_JOINT_LIMITED | PHYS_JOINT_DRIVEN)) != 0 ||
+                j->hertz[joint] > 0.0f || j->damping[joint] > 0.0f;
+}
+
+static void gather_joints(phys_world *w, uint32_t *parent, hold *holds) {
     for (uint32_t i = 0; i < core_columns_count(&w->joints.set); i++) {
         uint32_t a = phys_joint_body(&w->bodies.set, w->joints.a[i]);
         uint32_t b = phys_joint_body(&w->bodies.set, w->joints.b[i]);
-        if (a != CORE_NO_ROW && b != CORE_NO_ROW && phys_mobile(&w->bodies, a) &&
-            phys_mobile(&w->bodies, b)) {
+        bool ma = a != CORE_NO_ROW && phys_mobile(&w->bodies, a);
+        bool mb = b != CORE_NO_ROW && phys_mobile(&w->bodies, b);
+        if (ma) {
+            note_hold(w, &holds[a], i, false);
+        }
+        if (mb) {
+            note_hold(w, &holds[b], i, true);
+        }
+        if (ma && mb) {
             join(parent, a, b); // trees are exact at any ratio of masses
-            joints[a]++;
+            holds[a].joints++;
+        } else if (ma || mb) {
+            holds[ma ? a : b].anchors++;
         }
     }
+}
+
+static void gather_pairs(phys_world *w, uint32_t *parent, float *ratio, hold *holds) {
+    gather_joints(w, parent, holds);
     for (uint32_t i = 0; i < core_columns_count(&w->balls.set); i++) {
         if (!w->balls.fixed[i] && w->balls.separation[i] < PHYS_APART) {
             note_pair(&w->bodies, parent, ratio, w->balls.a[i], w->balls.b[i]);
@@ -146,7 +181,20 @@ static void gather_pairs(phys_world *w, uint32_t *parent, float *ratio, uint32_t
     }
 }
 
-static uint8_t island_level(const phys_world *w, const island *s) {
+// One path of ball joints, held by one end at most: solved as a chain.
+static bool is_chain(const island *s) {
+    return s->joints + s->anchors != 0 && !s->branched && s->joints < s->count && s->anchors <= 1;
+}
+
+static uint8_t island_level(const phys_world *w, const island *s, float dt) {
+    if (is_chain(s) && !s->touched) {
+        float substeps = CHAIN_SUBSTEPS * dt * core_sqrtf(s->rate);
+        float most = (float)w->solver->substeps;
+        return substeps <= 0.5f * most   ? PHYS_LEVEL_FEW
+               : substeps <= most        ? 0
+               : substeps <= 2.0f * most ? 1
+                                         : 2;
+    }
     if (s->ratio > VERY_HEAVY_RATIO) {
         return 2;
     }
@@ -166,9 +214,19 @@ static void put_to_sleep(phys_bodies *b, uint32_t i, uint32_t id) {
     phys_put3(b->wx, b->wy, b->wz, i, core_v3(0, 0, 0));
 }
 
+// The rate at which a body turns or could tremble.
+static void note_turning(const phys_bodies *b, uint32_t i, const hold *h, island *s) {
+    core_vec3 turn = phys_get3(b->wx, b->wy, b->wz, i);
+    float inverse = CORE_MAX(CORE_MAX(b->ix[i], b->iy[i]), b->iz[i]);
+    s->rate = CORE_MAX(s->rate, h->pull * inverse + core_v3_dot(turn, turn));
+    s->joints += h->joints;
+    s->anchors += h->anchors;
+    s->branched |= h->count > 2 || h->other;
+}
+
 // Sums up islands by their leading rows. Returns how many there are.
 static uint32_t sum_islands(const phys_world *w, uint32_t *parent, const float *ratio,
-                            const uint32_t *joints, island *sum, uint32_t n) {
+                            const hold *holds, island *sum, uint32_t n) {
     const phys_bodies *b = &w->bodies;
     uint32_t islands = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -187,7 +245,8 @@ static uint32_t sum_islands(const phys_world *w, uint32_t *parent, const float *
         s->ratio = CORE_MAX(s->ratio, ratio[i]);
         s->restless |= !rests(b, i);
         s->count++;
-        s->joints += joints[i];
+        s->touched |= b->touching[i] != 0;
+        note_turning(b, i, &holds[i], s);
     }
     return islands;
 }
@@ -213,21 +272,21 @@ void phys_islands_update(phys_world *w, float dt) {
     size_t mark = core_arena_mark(&w->scratch);
     uint32_t *parent = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
     float *ratio = CORE_ARENA_ARRAY(&w->scratch, float, n + 1);
-    uint32_t *joints = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
+    hold *holds = CORE_ARENA_ARRAY(&w->scratch, hold, n + 1);
     island *sum = CORE_ARENA_ARRAY(&w->scratch, island, n + 1);
     for (uint32_t i = 0; i < n; i++) {
         parent[i] = i;
         ratio[i] = 1.0f;
-        joints[i] = 0;
+        holds[i] = (hold){0};
     }
-    gather_pairs(w, parent, ratio, joints);
-    w->islands = sum_islands(w, parent, ratio, joints, sum, n);
+    gather_pairs(w, parent, ratio, holds);
+    w->islands = sum_islands(w, parent, ratio, holds, sum, n);
     for (uint32_t i = 0; i < n; i++) {
         if (!phys_mobile(b, i)) {
             continue;
         }
         uint32_t root = find_root(parent, i);
-        b->level[i] = levels ? island_level(w, &sum[root]) : 0;
+        b->level[i] = levels ? island_level(w, &sum[root], dt) : 0;
         if (sleeps && !sum[root].restless) {
             b->level[i] = PHYS_LEVELS; // marked: flags are read until all are looked at
         }

@@ -25,7 +25,7 @@ static uint32_t body_of(soft_joints *s, uint32_t *known, const uint32_t *index, 
                               .im = mobile ? b->im[row] : 0.0f,
                               .center0 = phys_get3(b->cx, b->cy, b->cz, row),
                               .q0 = phys_body_quat(b, row)};
-    s->jointed[place] = true;
+    s->jointed[place] = PHYS_JOINTED;
     return i;
 }
 
@@ -37,6 +37,9 @@ static void put3(float *out, core_vec3 v) {
 
 static void update_body(soft_joints *s, uint32_t i) {
     joint_body *b = &s->body[i];
+    if (b->chained) {
+        return;
+    }
     const float *m = s->bodies->moved + (size_t)b->place * 8;
     b->center = core_v3_add(b->center0, core_v3(m[0], m[1], m[2]));
     b->q = b->placed ? phys_turned(b->q0, core_v3(m[4], m[5], m[6])) : b->q0;
@@ -71,7 +74,7 @@ static void collect(soft_joints *s, const uint32_t *index, uint32_t level) {
     core_arena *arena = &w->scratch;
     uint32_t n = core_columns_count(&w->bodies.set), joints = core_columns_count(&j->set);
     s->body = CORE_ARENA_ARRAY(arena, joint_body, CORE_MIN(n, 2 * joints) + 1);
-    s->jointed = CORE_ARENA_ARRAY(arena, bool, s->bodies->count + 1);
+    s->jointed = CORE_ARENA_ARRAY(arena, uint8_t, s->bodies->count + 1);
     s->work = CORE_ARENA_ARRAY(arena, joint_work, joints);
     memset(s->jointed, 0, s->bodies->count + 1);
     size_t floats = ((size_t)s->bodies->count + 1) * 8;
@@ -279,7 +282,7 @@ static void fill_inverse(const soft_joints *s, const joint_work *k, joint_block 
 
 static void refresh(soft_joints *s, uint32_t i) {
     joint_work *k = &s->work[i];
-    if (k->pointed) {
+    if (k->pointed || k->chained) {
         return;
     }
     joint_rows_make(s, k);
@@ -350,6 +353,23 @@ static void run_trees(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, u
     }
 }
 
+typedef struct chain_job {
+    soft_joints *s;
+    chain_pass pass;
+} chain_job;
+static void run_chain(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk;
+    (void)worker;
+    const chain_job *job = ctx;
+    soft_joints *s = job->s;
+    for (uint32_t i = begin; i < end; i++) {
+        CORE_SIMD_SELECT(phys_joint_chain)(&s->chains, i, s->bodies, job->pass, s->h);
+    }
+}
+static void run_chains(soft_joints *s, chain_pass pass) {
+    core_jobs_for(s->world->jobs, s->chains.count, 1, run_chain, &(chain_job){s, pass});
+}
+
 // What joints give is no part of the solver's common warm start, which would give it in the old
 // direction again: a swinging body would gain energy.
 static void note_start(soft_joints *s, uint32_t i) {
@@ -378,12 +398,12 @@ static void move_impulses(soft_joints *s, bool to_lanes) {
 }
 
 soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const uint32_t *index,
-                                    uint32_t level, float h) {
+                                    uint32_t level, float h, bool alone) {
     if (core_columns_count(&w->joints.set) == 0) {
         return NULL;
     }
     soft_joints *s = CORE_ARENA_ARRAY(&w->scratch, soft_joints, 1);
-    *s = (soft_joints){.world = w, .bodies = bodies, .h = h};
+    *s = (soft_joints){.world = w, .bodies = bodies, .h = h, .alone = alone};
     collect(s, index, level);
     if (s->count == 0) {
         return NULL;
@@ -393,11 +413,15 @@ soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const ui
         joint_work *k = &s->work[i];
         k->upper = (w->joints.flags[k->joint] & PHYS_JOINT_LIMITED) && joint_rows_upper(s, k);
     }
+    joint_tree_choose(s);
+    joint_chains_build(s);
     joint_tree_build(s);
     for (uint32_t i = 0; i < s->count; i++) {
         joint_work *k = &s->work[i];
-        k->pointed = k->type == PHYS_JOINT_BALL && k->soft == 0 && !k->direct;
-        k->blocked = !k->pointed && (k->soft != 0 || !k->direct);
+        bool hard = !k->direct && !k->chained;
+        k->pointed = k->type == PHYS_JOINT_BALL && k->soft == 0 && hard;
+        k->blocked = !k->pointed && (k->soft != 0 || hard);
+        s->others += !k->chained;
     }
     make_points(s);
     make_blocks(s);
@@ -408,6 +432,7 @@ soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const ui
         load_impulses(s, &s->work[i]);
     }
     move_impulses(s, true);
+    run_chains(s, CHAIN_BEGIN);
     return s;
 }
 
@@ -415,6 +440,9 @@ soft_joints *phys_soft_joints_begin(phys_world *w, soft_bodies *bodies, const ui
 static void sum_load(soft_joints *s, uint32_t i) {
     joint_work *k = &s->work[i];
     core_vec3 force = {0}, torque = {0};
+    if (k->chained) {
+        return;
+    }
     if (k->pointed) { // no torque about the anchor
         const joint_points *p = &s->point[k->block];
         force = core_v3(p->impulse[0][k->lane], p->impulse[1][k->lane], p->impulse[2][k->lane]);
@@ -445,7 +473,7 @@ static void run_colors(soft_joints *s, soft_pass pass) {
     }
 }
 
-void phys_soft_joints_pass(soft_joints *s, soft_pass pass) {
+static void pass_others(soft_joints *s, soft_pass pass) {
     each(s, s->body_count, 512, note_start);
     if (pass == SOFT_SOLVE) {
         run_colors(s, SOFT_WARM);
@@ -459,6 +487,17 @@ void phys_soft_joints_pass(soft_joints *s, soft_pass pass) {
         move_impulses(s, false);
         each(s, s->count, 256, sum_load);
         s->time += s->h;
+    }
+}
+
+// Chains are exact: where nothing comes between, the next substep's solution does for the
+// relaxation too.
+void phys_soft_joints_pass(soft_joints *s, soft_pass pass, bool last) {
+    if (s->others != 0) {
+        pass_others(s, pass);
+    }
+    if (pass == SOFT_SOLVE || last || !s->alone) {
+        run_chains(s, pass == SOFT_SOLVE ? CHAIN_SOLVE : CHAIN_RELAX);
     }
 }
 
@@ -477,7 +516,12 @@ static void turn_pivots(soft_joints *s) {
 }
 
 // After the bodies moved: rows of the new pose, for the relaxation and the next substep.
-void phys_soft_joints_move(soft_joints *s) {
+void phys_soft_joints_move(soft_joints *s, bool last) {
+    run_chains(s, last ? CHAIN_LAST : CHAIN_MOVE);
+    s->elapsed += s->h;
+    if (s->others == 0) {
+        return;
+    }
     turn_pivots(s);
     each(s, s->body_count, 512, update_body);
     each(s, s->count, 64, refresh);
@@ -487,6 +531,7 @@ void phys_soft_joints_move(soft_joints *s) {
 
 void phys_soft_joints_end(soft_joints *s) {
     phys_joints *j = &s->world->joints;
+    joint_chains_end(s);
     for (uint32_t i = 0; i < s->count; i++) {
         const joint_work *k = &s->work[i];
         phys_joint_impulse *stored = &j->impulse[k->joint];
@@ -495,7 +540,8 @@ void phys_soft_joints_end(soft_joints *s) {
             *(soft ? &stored->soft[r - k->hard] : &stored->hard[r]) =
                 r == k->hard && k->upper ? -k->row[r].impulse : k->row[r].impulse;
         }
-        j->force[k->joint] = core_v3_scale(k->force, 1.0f / s->time);
-        j->torque[k->joint] = core_v3_scale(k->torque, 1.0f / s->time);
+        float time = k->chained ? s->elapsed : s->time;
+        j->force[k->joint] = core_v3_scale(k->force, 1.0f / time);
+        j->torque[k->joint] = core_v3_scale(k->torque, 1.0f / time);
     }
 }

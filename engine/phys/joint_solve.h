@@ -5,7 +5,7 @@
 #ifndef PHYS_JOINT_SOLVE_H
 #define PHYS_JOINT_SOLVE_H
 
-#include "phys/soft.h"
+#include "phys/joint_chain.h"
 
 #define JOINT_NONE UINT32_MAX
 // Hard rows in loops, in the pass that corrects: part of the error that a substep takes back, and
@@ -20,6 +20,7 @@
 typedef struct joint_body {
     uint32_t row, place; // place: in soft_bodies
     bool mobile, placed; // placed: has a velocity (mobile or kinematic)
+    bool chained;
     float im;
     core_vec3 center; // now
     core_quat q, q0;  // now, at the start of the step
@@ -42,6 +43,7 @@ typedef struct joint_work {
     uint32_t a, b;  // joint_body
     uint8_t type, hard, soft;
     bool direct;  // hard rows belong to a tree
+    bool chained; // joint of a chain
     bool blocked; // has a lane
     bool pointed; // in joint_points
     bool upper;   // side of the limit in this step
@@ -103,16 +105,23 @@ typedef struct joint_tree {
     uint32_t trees;
 } joint_tree;
 
+enum { PHYS_JOINTED = 1, PHYS_CHAINED = 2 }; // chains keep rotations themselves
+
 typedef struct soft_joints {
     phys_world *world;
     soft_bodies *bodies;
-    float h, time; // s: of a substep; of those done
+    float h;       // s, of a substep
+    float time;    // s, that loads of rows were summed over
+    float elapsed; // s, in this step
     joint_body *body;
     uint32_t body_count;
-    bool *jointed; // by place
+    uint8_t *jointed; // by place: PHYS_JOINTED or PHYS_CHAINED
+    bool alone;       // no contact on the level
     joint_work *work;
     uint32_t count;
+    uint32_t others; // joints outside of chains
     joint_tree tree;
+    joint_chains chains;
     joint_block *block;
     joint_points *point;
     joint_poses poses;
@@ -126,7 +135,12 @@ void joint_rows_make(const soft_joints *s, joint_work *k);
 // Whether the upper limit is the nearer one.
 bool joint_rows_upper(const soft_joints *s, const joint_work *k);
 
+// joint_chain.c: after joint_tree_choose, takes its joints from the trees.
+void joint_chains_build(soft_joints *s);
+void joint_chains_end(soft_joints *s);
+
 // joint_tree.c
+void joint_tree_choose(soft_joints *s);
 void joint_tree_build(soft_joints *s);
 void joint_tree_factor(soft_joints *s, uint32_t tree);
 void joint_tree_solve(soft_joints *s, uint32_t tree, bool correct);
@@ -134,11 +148,11 @@ void joint_tree_solve(soft_joints *s, uint32_t tree, bool correct);
 void joint_invert(double a[6][6], uint32_t n);
 
 // joint_solve.c: NULL when no joint is on the level. Called by soft.c in this order: begin,
-// per substep pass SOFT_SOLVE, move, pass SOFT_RELAX; then end.
+// per substep pass SOFT_SOLVE, move, pass SOFT_RELAX; then end. alone: no contact on the level.
 soft_joints *phys_soft_joints_begin(phys_world *world, soft_bodies *bodies, const uint32_t *index,
-                                    uint32_t level, float h);
-void phys_soft_joints_pass(soft_joints *s, soft_pass pass);
-void phys_soft_joints_move(soft_joints *s);
+                                    uint32_t level, float h, bool alone);
+void phys_soft_joints_pass(soft_joints *s, soft_pass pass, bool last);
+void phys_soft_joints_move(soft_joints *s, bool last);
 void phys_soft_joints_end(soft_joints *s);
 
 CORE_SIMD_DECLARE(void, phys_joint_blocks,

@@ -25,7 +25,9 @@ static uint32_t find_root(uint32_t *parent, uint32_t i) {
 
 // Marks the joints that trees are made of. A group of bodies with many loops is left to iteration
 // whole: exact pieces of a net gain nothing.
-static void choose(soft_joints *s, core_arena *arena) {
+void joint_tree_choose(soft_joints *s) {
+    core_arena *arena = &s->world->scratch;
+    size_t mark = core_arena_mark(arena);
     uint32_t n = s->body_count;
     uint32_t *parent = CORE_ARENA_ARRAY(arena, uint32_t, n);
     uint32_t *loops = CORE_ARENA_ARRAY(arena, uint32_t, n);
@@ -63,6 +65,7 @@ static void choose(soft_joints *s, core_arena *arena) {
         uint32_t root = find_root(parent, s->body[k->a].mobile ? k->a : k->b);
         k->direct &= loops[root] * 4 <= edges[root];
     }
+    core_arena_rewind(arena, mark);
 }
 
 // Lists of each body's joints in trees; those to what does not move name JOINT_NONE.
@@ -134,7 +137,6 @@ void joint_tree_build(soft_joints *s) {
     t->first_body = CORE_ARENA_ARRAY(arena, uint32_t, n + 1);
     t->body = CORE_ARENA_ARRAY(arena, uint32_t, n + 1);
     size_t mark = core_arena_mark(arena);
-    choose(s, arena);
     uint32_t *start = CORE_ARENA_ARRAY(arena, uint32_t, n + 2);
     edge *list = CORE_ARENA_ARRAY(arena, edge, 2 * (size_t)s->count + 1);
     edge *up = CORE_ARENA_ARRAY(arena, edge, n);

@@ -401,9 +401,6 @@ static void run_blocks(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, 
 
 // Colour after colour; contacts with what cannot move come last and so have the last word.
 static void run_pass(soft *s, soft_pass pass) {
-    if (s->joints != NULL && (pass == SOFT_SOLVE || pass == SOFT_RELAX)) {
-        phys_soft_joints_pass(s->joints, pass);
-    }
     for (int g = 0; g < GROUPS; g++) {
         const soft_group *group = &s->group[g];
         for (uint32_t c = 0; c < SOFT_COLORS && group->lanes[c] != 0; c++) {
@@ -414,6 +411,13 @@ static void run_pass(soft *s, soft_pass pass) {
         pass_job job = {s, pass, g, group->first[SOFT_COLORS]};
         run_blocks(&job, 0, group->lanes[SOFT_COLORS], 0, 0);
     }
+}
+
+static void pass_with_joints(soft *s, soft_pass pass, bool last) {
+    if (s->joints != NULL) {
+        phys_soft_joints_pass(s->joints, pass, last);
+    }
+    run_pass(s, pass);
 }
 
 typedef struct flat_job {
@@ -478,6 +482,12 @@ static void finish_body(soft *s, uint32_t k) {
         way = core_v3_mad(way, a, -0.5f * s->h * s->dt);
     }
     phys_put3(b->cx, b->cy, b->cz, i, core_v3_add(phys_get3(b->cx, b->cy, b->cz, i), way));
+    if (s->joints != NULL && s->joints->jointed[k] == PHYS_CHAINED) {
+        const float *q = s->joints->poses.pose + (size_t)k * 8 + 4;
+        phys_finish_precession(b, i, s->dt);
+        phys_put_quat(b, i, (core_quat){q[0], q[1], q[2], s->joints->poses.real[(size_t)k * 8]});
+        return;
+    }
     phys_finish_rotation(b, i, turn, s->dt, free);
 }
 
@@ -512,15 +522,16 @@ static void solve_substeps(soft *s, int substeps) {
         if (k == 0) {
             run_pass(s, SOFT_WARM);
         }
-        run_pass(s, SOFT_SOLVE);
+        bool last = k + 1 == substeps;
+        pass_with_joints(s, SOFT_SOLVE, last);
         hold_locks(s);
         flat(s, s->move);
         if (s->joints != NULL) {
-            phys_soft_joints_move(s->joints);
+            phys_soft_joints_move(s->joints, last);
         }
-        run_pass(s, SOFT_RELAX);
+        pass_with_joints(s, SOFT_RELAX, last);
         for (; extra > 0; extra--) {
-            run_pass(s, SOFT_RELAX);
+            pass_with_joints(s, SOFT_RELAX, last);
         }
         hold_locks(s);
     }
@@ -575,7 +586,8 @@ static void collect(soft *s) {
 
 static void step_level(phys_world *w, float dt, uint32_t level) {
     size_t mark = core_arena_mark(&w->scratch);
-    int substeps = w->substeps ? w->substeps : w->solver->substeps << level;
+    int most = level == PHYS_LEVEL_FEW ? w->solver->substeps / 2 : w->solver->substeps << level;
+    int substeps = w->substeps ? w->substeps : most;
     soft s = {
         .world = w, .dt = dt, .h = dt / (float)substeps, .level = level, .substeps = substeps};
     float stiffness = level == 0 ? STIFFNESS : STIFFNESS_HARD;
@@ -590,7 +602,8 @@ static void step_level(phys_world *w, float dt, uint32_t level) {
         make_bodies(&s);
         color_contacts(&s);
         make_blocks(&s);
-        s.joints = phys_soft_joints_begin(w, &s.bodies, s.index, level, s.h);
+        s.joints = phys_soft_joints_begin(w, &s.bodies, s.index, level, s.h,
+                                          s.ball_count + s.contact_count == 0);
         each(&s, s.ball_count, fill_ball);
         each(&s, s.contact_count, fill_manifold);
         solve_substeps(&s, substeps);

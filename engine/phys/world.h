@@ -270,7 +270,9 @@ typedef struct phys_solver_method {
     bool sleeps;              // leaves sleeping bodies out and has levels of substeps
     void (*step)(phys_world *world, float dt);
 } phys_solver_method;
-#define PHYS_LEVELS 3u // substeps of the solver's default, twice and four times as many
+// Levels of substeps: the solver's default, twice and four times as many; half for calm chains.
+#define PHYS_LEVELS    4u
+#define PHYS_LEVEL_FEW 3u
 
 // Where static bodies changed; see phys_world_static_changes.
 #define PHYS_STATIC_LOG 256u
@@ -515,8 +517,11 @@ bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, f
 
 // integrate.c
 void phys_integrate_velocity(phys_world *world, float h);
-core_quat phys_turned(core_quat q, core_vec3 turn); // by a rotation vector, rad
+core_quat phys_turned(core_quat q, core_vec3 turn);            // by a rotation vector, rad
+void phys_put_quat(phys_bodies *b, uint32_t row, core_quat q); // made of unit length
 void phys_integrate_rotation(phys_bodies *b, uint32_t row, float h);
+// The change of angular velocity that keeps the momentum of a body that is not round.
+void phys_finish_precession(phys_bodies *b, uint32_t row, float dt);
 void phys_finish_rotation(phys_bodies *b, uint32_t row, core_vec3 turn, float dt, bool free);
 // Moves a free body by a method of motion.h, from its state at the start of the step.
 void phys_integrate_free(phys_world *world, uint32_t row, float dt, int substeps);
