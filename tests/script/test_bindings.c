@@ -33,7 +33,7 @@ static unsigned any_phase(const bind_fn *fn) {
 
 // ---- values ----
 
-// Code that makes a live object. Types without one are tested as destroyed objects only.
+// Code that makes a live object. A model needs a file: its methods are tested as a destroyed one's.
 #define SKELETON "corsac.anim.newSkeleton{{name = 'root'}}"
 #define CLIP     "corsac.anim.newClip{skeleton = s, duration = 1, keys = {{bone = 'root', time = 0}}}"
 static const struct {
@@ -51,6 +51,14 @@ static const struct {
     {"Surface", "return corsac.nav.newSurface{boxes = {{size = {9, 1, 9}}}}"},
     {"Agent", "return corsac.nav.newAgent{position = {0, 0, 0}}"},
     {"Animator", "return corsac.anim.newAnimator(" SKELETON ")"},
+    {"Mask", "return corsac.anim.newMask(" SKELETON ", {'root'})"},
+    {"Trigger", "return corsac.phys.newTrigger{}"},
+    {"Field", "return corsac.phys.newField{}"},
+    {"Joint", "local a = corsac.phys.newBody{shape = 'box'} local b ="
+              " corsac.phys.newBody{shape = 'box', position = {2, 0, 0}}"
+              " return corsac.phys.newJoint{type = 'ball', a = a, b = b}"},
+    {"Mover", "return corsac.phys.newMover{}"},
+    {"Material", "return corsac.gfx.newMaterial{}"},
     {"Sound", "return corsac.audio.newSound('beep.wav')"},
     {"Source", "return corsac.audio.newSource{sound = corsac.audio.newSound('beep.wav')}"},
 };
@@ -396,7 +404,7 @@ static void test_every_function_refuses_what_it_does_not_take(void) {
                 target t = {.fn = fn, .type = type};
                 snprintf(t.owner, sizeof t.owner, "%s:%s", type->name, fn->name);
                 check_stale(&t);
-                if (maker_of(type)) {
+                if (strcmp(type->name, "Model") != 0) {
                     check_target(&t);
                 }
             }
