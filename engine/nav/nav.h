@@ -241,11 +241,51 @@ double nav_mesh_area(const nav_world *world, nav_mesh mesh); // m^2 on the groun
 // height. False when there is none.
 bool nav_mesh_nearest(const nav_world *world, nav_mesh mesh, core_vec3 p, float max_distance,
                       core_vec3 *out);
-// Shortest way between two points of the surface (as nav_mesh_nearest within two cells finds them;
-// NAV_NO_PATH when there is none). Writes the first `capacity` of its result->count points: start,
-// corners, goal. result->cost is its length on the ground plane in m.
-// Cui, Harabor, Grastien, "Compromise-free pathfinding on a navigation mesh" (Polyanya), IJCAI
-// 2017.
+
+// ---- links that leave the surface: jumps, ladders, doors ----
+#define NAV_NO_LINK UINT32_MAX
+typedef enum nav_link_kind { NAV_LINK_JUMP, NAV_LINK_LADDER, NAV_LINK_DOOR } nav_link_kind;
+typedef struct nav_mesh_link_desc {
+    core_vec3 start, end; // walked while each is at most two cells from the surface
+    float cost;           // as so many metres of plain ground; 0: its length
+    bool both_ways;       // else from start to end
+    bool closed;
+    nav_link_kind kind; // for whoever moves the agent
+    uint64_t user;      // the owner's, kept as it is
+    uint32_t cookie;
+} nav_mesh_link_desc;
+nav_mesh_link_desc nav_mesh_link_desc_default(void);
+// A link's id is never given again. NAV_NO_LINK + core_fail for positions that are not finite and
+// costs below 0.
+uint32_t nav_mesh_add_link(nav_world *world, nav_mesh mesh, const nav_mesh_link_desc *desc);
+bool nav_mesh_remove_link(nav_world *world, nav_mesh mesh, uint32_t link);
+bool nav_mesh_set_link_open(nav_world *world, nav_mesh mesh, uint32_t link, bool open);
+bool nav_mesh_get_link(const nav_world *world, nav_mesh mesh, uint32_t link,
+                       nav_mesh_link_desc *out);
+uint32_t nav_mesh_link_end(const nav_world *world, nav_mesh mesh); // ids are below this
+
+// ---- ways across a surface ----
+// Ends are taken to the surface when they are at most two cells off it. Without links and costs the
+// way is the shortest there is: Cui, Harabor, Grastien, "Compromise-free pathfinding on a
+// navigation mesh" (Polyanya), IJCAI 2017. With links, points on the borders of polygons choose
+// them (after Lanthier, Maheshwari, Sack, "Approximating weighted shortest paths on polyhedral
+// surfaces", SoCG 1997) and the ways between them are again the shortest; where areas differ in
+// cost, its crossings of borders are moved to their best places.
+typedef struct nav_mesh_query {
+    nav_mesh mesh;
+    core_vec3 start, goal;
+    // [NAV_AREAS] of a metre, finite and > 0; 0: 1; INFINITY: not walked. NULL: 1 everywhere
+    const float *area_cost;
+    bool partial; // else to the reachable point nearest to the goal (NAV_PARTIAL)
+    uint32_t cookie;
+} nav_mesh_query;
+nav_mesh_query nav_mesh_query_default(void);
+// Writes the first `capacity` of result->count points: start, bends, goal; link[i] is the link that
+// leads from point i to the next, NAV_NO_LINK: the ground does. Both may be NULL. result->cost is
+// the length on the ground plane in m times the cost of areas, and that of links.
+bool nav_mesh_find_way(nav_world *world, const nav_mesh_query *query, nav_result *result,
+                       core_vec3 *point, uint32_t *link, uint32_t capacity);
+// With the default query.
 bool nav_mesh_search(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
                      nav_result *result, core_vec3 *out, uint32_t capacity);
 
@@ -253,8 +293,7 @@ bool nav_mesh_search(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3
 // A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when
 // its graph has changed; nav_path_update does so at once.
 nav_path nav_path_create(nav_world *world, nav_graph graph, core_vec3 start, core_vec3 goal);
-// The same across a walkable surface, its bends half a cell off the corners; without a way there is
-// none in part (NAV_NO_PATH, no points).
+// The same across a walkable surface, its bends half a cell off the corners.
 nav_path nav_path_create_on_mesh(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal);
 bool nav_path_destroy(nav_world *world, nav_path path);
 bool nav_path_alive(const nav_world *world, nav_path path);
@@ -266,6 +305,8 @@ double nav_path_cost(const nav_world *world, nav_path path); // of its links; le
 uint32_t nav_path_count(const nav_world *world, nav_path path);
 bool nav_path_point(const nav_world *world, nav_path path, uint32_t i, core_vec3 *out);
 uint32_t nav_path_node(const nav_world *world, nav_path path, uint32_t i); // NAV_NO_NODE: none
+// On a surface: the link from point i to the next, NAV_NO_LINK: none.
+uint32_t nav_path_link(const nav_world *world, nav_path path, uint32_t i);
 // Times it has been planned: changes when the nodes may have.
 uint32_t nav_path_plans(const nav_world *world, nav_path path);
 
@@ -308,6 +349,8 @@ bool nav_agent_set_position(nav_world *world, nav_agent agent, core_vec3 positio
 bool nav_agent_velocity(const nav_world *world, nav_agent agent, core_vec3 *out);
 bool nav_agent_heading(const nav_world *world, nav_agent agent, float *out);
 bool nav_agent_set_max_speed(nav_world *world, nav_agent agent, float speed);
+// The link (of the surface of its path) on which it is now, NAV_NO_LINK on the ground.
+uint32_t nav_agent_link(const nav_world *world, nav_agent agent);
 // Its path, null when it never went anywhere.
 nav_path nav_agent_path(const nav_world *world, nav_agent agent);
 uint32_t nav_agent_count(const nav_world *world);

@@ -353,7 +353,8 @@ static bool advance(nav_world *w, uint32_t row, uint32_t path, float dt, core_ve
             to.y = 0.0f; // physics decides how high it stands
         }
         // A crowd may have pushed it past a corner.
-        bool beyond = !last && passed(*target, next, here, 4.0f * a->radius[row]);
+        bool beyond = !last && nav_agent_row_link(w, row) == NAV_NO_LINK &&
+                      passed(*target, next, here, 4.0f * a->radius[row]);
         if (core_v3_dot(to, to) > near * near && !beyond) {
             return true;
         }
@@ -496,10 +497,28 @@ static void move(nav_agents *a, uint32_t row, float dt) {
     }
 }
 
+uint32_t nav_agent_row_link(const nav_world *w, uint32_t row) {
+    const nav_agents *a = &w->agent;
+    uint32_t path = core_columns_row(&w->path.set, a->path[row]);
+    if (path == CORE_NO_ROW || a->state[row] != NAV_AGENT_WALKING || a->corner[row] == 0 ||
+        a->corner[row] > w->path.head[path].count || core_handle_is_null(w->path.head[path].mesh)) {
+        return NAV_NO_LINK;
+    }
+    return w->path.points[path].node[a->corner[row] - 1];
+}
+
+uint32_t nav_agent_link(const nav_world *w, nav_agent agent) {
+    uint32_t row = agent_row(w, agent);
+    return row == CORE_NO_ROW ? NAV_NO_LINK : nav_agent_row_link(w, row);
+}
+
 // Who crosses a surface stays on it, whatever others push: at its border it slides along, and its
-// height is the ground's.
+// height is the ground's. Links lead off it.
 static void keep_on_surface(nav_world *w, uint32_t row) {
     nav_agents *a = &w->agent;
+    if (nav_agent_row_link(w, row) != NAV_NO_LINK) {
+        return;
+    }
     uint32_t path = core_columns_row(&w->path.set, a->path[row]);
     core_vec3 p = place(a, row);
     if (path != CORE_NO_ROW && !a->driven[row] && nav_mesh_hold(w, w->path.head[path].mesh, &p)) {

@@ -257,8 +257,8 @@ static void avoid_one(nav_world *w, uint32_t row, float dt) {
     nav_agents *a = &w->agent;
     flat want = {a->wx[row], a->wz[row]}, now = {a->vx[row], a->vz[row]};
     a->nx[row] = want.x, a->nz[row] = want.z;
-    if (stands(a, row)) {
-        return; // others go round it
+    if (stands(a, row) || nav_agent_row_link(w, row) != NAV_NO_LINK) {
+        return; // others go round it; and on a link there is no other way
     }
     near_list list = {.count = 0};
     find_near(c, a, row, &list);

@@ -72,7 +72,7 @@ typedef struct nav_path_head {
 } nav_path_head;
 typedef struct nav_path_points {
     core_vec3 *point;
-    uint32_t *node; // of a graph
+    uint32_t *node; // of a graph; on a surface the link to the next point
     uint32_t capacity;
 } nav_path_points;
 #define NAV_PATH_COLUMNS(X)                                                                        \
@@ -219,6 +219,8 @@ struct nav_world {
     nav_grids grid;
     nav_meshes mesh;
     nav_view_scratch views;
+    nav_way way;
+    nav_coarse_scratch coarse;
     nav_builder *builder; // made with the first surface
     nav_scratch scratch;
     nav_crowd crowd;
@@ -254,5 +256,6 @@ void nav_crowd_avoid(nav_world *world, float dt); // wanted velocities to safe o
 void nav_crowd_release(nav_crowd *crowd);
 // nav_agent.c
 void nav_agents_step(nav_world *world, float dt);
+uint32_t nav_agent_row_link(const nav_world *world, uint32_t row);
 
 #endif

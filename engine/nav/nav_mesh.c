@@ -28,11 +28,25 @@ void nav_mesh_free(nav_mesh_data *m) {
     if (m->spare) {
         nav_piece_free(m->spare);
     }
-    void *own[] = {
-        m->tile,          m->piece,          m->span.first,        m->span.stack, m->span.x,
-        m->span.z,        m->span.y,         m->span.area,         m->span.link,  m->span.polygon,
-        m->polygon.shape, m->polygon.edges,  m->polygon.component, m->edge,       m->turn_y,
-        m->turn_closed,   m->component_queue};
+    void *own[] = {m->tile,
+                   m->piece,
+                   m->span.first,
+                   m->span.stack,
+                   m->span.x,
+                   m->span.z,
+                   m->span.y,
+                   m->span.area,
+                   m->span.link,
+                   m->span.polygon,
+                   m->polygon.shape,
+                   m->polygon.edges,
+                   m->polygon.component,
+                   m->edge,
+                   m->turn_y,
+                   m->turn_closed,
+                   m->component_queue.data,
+                   m->edge_owner,
+                   m->link};
     for (size_t i = 0; i < CORE_COUNT_OF(own); i++) {
         core_free(own[i]);
     }
@@ -48,7 +62,8 @@ size_t nav_mesh_bytes(const nav_mesh_data *m) {
                    (size_t)m->tiles_x * m->tiles_z * sizeof *m->tile +
                    (size_t)m->span.room * (8 * sizeof(uint32_t) + 1) +
                    m->polygon.room * (sizeof(nav_rectangle) + 3 * sizeof(uint32_t)) +
-                   m->edge_room * sizeof(nav_edge) + m->turn_room * (sizeof(float) + 1);
+                   m->edge_room * (sizeof(nav_edge) + sizeof(uint32_t)) +
+                   m->link_room * sizeof(nav_mesh_link) + m->turn_room * (sizeof(float) + 1);
     for (uint32_t i = 0; i < m->piece_count; i++) {
         const nav_piece *p = m->piece[i];
         bytes += sizeof *p + p->triangles.bytes + p->first.bytes + p->item.bytes;

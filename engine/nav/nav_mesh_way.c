@@ -1,130 +1,31 @@
-// Points on walkable surfaces and ways across them.
+// Ways across walkable surfaces: which search a query needs, and the points it gives.
+#include <math.h>
 #include <string.h>
 
 #include "nav/nav_internal.h"
 
-static const nav_mesh_data *find(const nav_world *w, nav_mesh mesh) {
-    uint32_t row;
-    return nav_mesh_find(w, mesh, &row);
+#define NAV_MESH_QUERY_COOKIE 0x4e415610u
+#define REACH                 2.0 // cells by which ends may be off the surface
+#define ANYWHERE              1e6
+
+nav_mesh_query nav_mesh_query_default(void) {
+    return (nav_mesh_query){.cookie = NAV_MESH_QUERY_COOKIE};
 }
-
-// ---- points on the surface ----
-
-static double clamp(double x, double low, double high) {
-    return x < low ? low : x > high ? high : x;
-}
-
-// Points keep a little off the borders of their cell: on a border or corner it would be open which
-// polygon they belong to.
-static void consider(const nav_mesh_data *m, int64_t x, int64_t z, nav_point p, double y,
-                     nav_place *best) {
-    if (x < 0 || z < 0 || x >= m->width || z >= m->depth) {
-        return;
-    }
-    size_t cell = (size_t)z * m->width + (size_t)x;
-    uint32_t end = m->span.first[cell] + m->span.stack[cell];
-    const double inset = 1e-4;
-    nav_point at = {clamp(p.x, (double)x + inset, (double)x + 1 - inset),
-                    clamp(p.z, (double)z + inset, (double)z + 1 - inset)};
-    double dx = at.x - p.x, dz = at.z - p.z, square = dx * dx + dz * dz;
-    for (uint32_t s = m->span.first[cell]; s < end; s++) {
-        double height = y - (double)m->span.y[s];
-        height = height < 0.0 ? -height : height;
-        bool nearer = square < best->square - 1e-3 ||
-                      (square <= best->square + 1e-3 && height < best->height);
-        if (best->span == NAV_NONE || nearer) {
-            *best = (nav_place){s, at, square, height};
-        }
-    }
-}
-
-nav_place nav_mesh_locate(const nav_mesh_data *m, core_vec3 p, double reach) {
-    double size = (double)m->cell_size;
-    nav_point at = {((double)p.x - m->origin.x) / size, ((double)p.z - m->origin.z) / size};
-    nav_place best = {.span = NAV_NONE};
-    if (!(at.x > -1e6 && at.x < 1e6 && at.z > -1e6 && at.z < 1e6) || p.y - p.y != 0.0f) {
-        return best;
-    }
-    int64_t x = (int64_t)core_floor(at.x), z = (int64_t)core_floor(at.z);
-    int64_t most = (int64_t)CORE_MIN(core_ceil(reach), (double)(m->width + m->depth));
-    for (int64_t ring = 0; ring <= most; ring++) {
-        for (int64_t dx = -ring; dx <= ring; dx++) {
-            bool edge = dx == -ring || dx == ring;
-            for (int64_t dz = -ring; dz <= ring; dz += edge || ring == 0 ? 1 : 2 * ring) {
-                consider(m, x + dx, z + dz, at, (double)p.y, &best);
-            }
-        }
-        if (best.span != NAV_NONE && best.square <= (double)(ring * ring)) {
-            break; // cells of further rings are further away
-        }
-    }
-    if (best.span != NAV_NONE && best.square > (reach + 2e-4) * (reach + 2e-4)) {
-        best.span = NAV_NONE;
-    }
-    return best;
-}
-
-core_vec3 nav_mesh_world_point(const nav_mesh_data *m, nav_point p, float y) {
-    return (core_vec3){(float)(m->origin.x + p.x * (double)m->cell_size), y,
-                       (float)(m->origin.z + p.z * (double)m->cell_size)};
-}
-
-bool nav_mesh_nearest(const nav_world *w, nav_mesh mesh, core_vec3 p, float max_distance,
-                      core_vec3 *out) {
-    const nav_mesh_data *m = find(w, mesh);
-    if (!m) {
-        return false;
-    }
-    double reach = max_distance > 0.0f ? (double)max_distance / (double)m->cell_size : 1e6;
-    nav_place found = nav_mesh_locate(m, p, reach);
-    if (found.span != NAV_NONE) {
-        *out = nav_mesh_world_point(m, found.at, m->span.y[found.span]);
-    }
-    return found.span != NAV_NONE;
-}
-
-bool nav_mesh_hold(const nav_world *w, nav_mesh mesh, core_vec3 *p) {
-    uint32_t row = core_columns_row(&w->mesh.set, mesh);
-    if (row == CORE_NO_ROW) {
-        return false;
-    }
-    const nav_mesh_data *m = w->mesh.data[row];
-    nav_place found = nav_mesh_locate(m, *p, 2.0);
-    if (found.span != NAV_NONE) {
-        *p = found.square > 0.0 ? nav_mesh_world_point(m, found.at, m->span.y[found.span])
-                                : (core_vec3){p->x, m->span.y[found.span], p->z};
-    }
-    return found.span != NAV_NONE;
-}
-
-void nav_mesh_room(const nav_world *w, nav_mesh mesh, core_vec3 p, float range, float out[4]) {
-    uint32_t row = core_columns_row(&w->mesh.set, mesh);
-    for (int d = 0; d < 4; d++) {
-        out[d] = __FLT_MAX__;
-    }
-    const nav_mesh_data *m = row == CORE_NO_ROW ? NULL : w->mesh.data[row];
-    nav_place at = m ? nav_mesh_locate(m, p, 2.0) : (nav_place){.span = NAV_NONE};
-    if (at.span == NAV_NONE) {
-        return;
-    }
-    double fx = at.at.x - m->span.x[at.span], fz = at.at.z - m->span.z[at.span];
-    const double ahead[4] = {1.0 - fx, 1.0 - fz, fx, fz};
-    for (int d = 0; d < 4; d++) {
-        double cells = ahead[d];
-        uint32_t span = m->span.link[at.span][d];
-        while (span != NAV_NONE && cells * (double)m->cell_size < (double)range) {
-            span = m->span.link[span][d];
-            cells += 1.0;
-        }
-        if (span == NAV_NONE) {
-            out[d] = (float)(cells * (double)m->cell_size);
-        }
-    }
-}
-
-// ---- search ----
 
 static bool same(nav_point a, nav_point b) { return a.x == b.x && a.z == b.z; }
+
+static void add_point(nav_way *way, core_vec3 point, uint32_t link) {
+    if (way->count == way->room) {
+        uint32_t wanted = CORE_MAX(way->room * 2, 64u);
+        way->point =
+            core_realloc(way->point, way->room * sizeof *way->point, wanted * sizeof *way->point);
+        way->link =
+            core_realloc(way->link, way->room * sizeof *way->link, wanted * sizeof *way->link);
+        way->room = wanted;
+    }
+    way->point[way->count] = point;
+    way->link[way->count++] = link;
+}
 
 // A bend, moved away from the closed cell that it goes round by so many cells along both axes.
 static nav_point clear_of_corner(const nav_mesh_data *m, const nav_view *v, double cells) {
@@ -134,61 +35,210 @@ static nav_point clear_of_corner(const nav_mesh_data *m, const nav_view *v, doub
                        v->root.z - cells * (dir_z[a] + dir_z[b])};
 }
 
-// Start, bends and goal from the chain of views. Two passes: the chain is read from its end.
-static void write_way(const nav_world *w, const nav_mesh_data *m, uint32_t last, nav_place start,
-                      nav_place goal, double clearance, nav_result *result, core_vec3 *out,
-                      uint32_t capacity) {
+// The bends of a chain of views, which is read from its end.
+static void add_bends(nav_world *w, const nav_mesh_data *m, uint32_t last, nav_point start,
+                      double clearance) {
     const nav_view *view = w->views.view;
-    uint32_t count = 2;
-    nav_point bend = start.at;
+    uint32_t first = w->way.count;
+    nav_point bend = start;
     for (uint32_t v = last; v != NAV_NONE; v = view[v].parent) {
-        count += !same(view[v].root, bend) && view[v].root_turn != NAV_NONE;
-        bend = view[v].root;
-    }
-    result->count = count;
-    uint32_t i = count - 1;
-    if (out && i < capacity) {
-        out[i] = nav_mesh_world_point(m, goal.at, m->span.y[goal.span]);
-    }
-    bend = start.at;
-    for (uint32_t v = last; v != NAV_NONE; v = view[v].parent) {
-        if (!same(view[v].root, bend) && view[v].root_turn != NAV_NONE && --i < capacity && out) {
-            out[i] = nav_mesh_world_point(m, clear_of_corner(m, &view[v], clearance),
-                                          m->turn_y[view[v].root_turn]);
+        if (!same(view[v].root, bend) && view[v].root_turn != NAV_NONE) {
+            nav_point at = clear_of_corner(m, &view[v], clearance);
+            add_point(&w->way, nav_mesh_world_point(m, at, m->turn_y[view[v].root_turn]),
+                      NAV_NO_LINK);
         }
         bend = view[v].root;
     }
-    if (out && capacity > 0) {
-        out[0] = nav_mesh_world_point(m, start.at, m->span.y[start.span]);
+    for (uint32_t i = first, k = w->way.count; i + 1 < k; i++) {
+        core_vec3 swap = w->way.point[i];
+        w->way.point[i] = w->way.point[--k];
+        w->way.point[k] = swap;
     }
 }
 
-bool nav_mesh_way(nav_world *w, nav_mesh mesh, core_vec3 from, core_vec3 to, double clearance,
-                  nav_result *result, core_vec3 *out, uint32_t capacity) {
+static void add_place(nav_world *w, const nav_mesh_data *m, nav_point at, uint32_t span,
+                      uint32_t link) {
+    add_point(&w->way, nav_mesh_world_point(m, at, m->span.y[span]), link);
+}
+
+// The shortest way over the ground, without its first point. Gives its length in cells, < 0: none.
+static double add_leg(nav_world *w, const nav_mesh_data *m, nav_point from, uint32_t from_span,
+                      nav_point to, uint32_t to_span, uint32_t link, double clearance,
+                      nav_result *result) {
+    uint32_t expanded = 0;
+    uint32_t last = nav_mesh_any_angle(m, &w->views, from, m->span.polygon[from_span], to,
+                                       m->span.polygon[to_span], &expanded);
+    result->expanded += expanded;
+    if (last == NAV_NONE) {
+        return -1.0;
+    }
+    add_bends(w, m, last, from, clearance);
+    add_place(w, m, to, to_span, link);
+    const nav_view *v = &w->views.view[last];
+    double dx = to.x - v->root.x, dz = to.z - v->root.z;
+    return v->g + core_sqrt(dx * dx + dz * dz);
+}
+
+static nav_status over_ground(nav_world *w, const nav_mesh_data *m, const nav_ends *ends,
+                              double clearance, nav_result *result) {
+    add_place(w, m, ends->start.at, ends->start.span, NAV_NO_LINK);
+    double length = add_leg(w, m, ends->start.at, ends->start.span, ends->goal.at, ends->goal.span,
+                            NAV_NO_LINK, clearance, result);
+    if (length < 0.0) {
+        w->way.count = 0;
+        return NAV_NO_PATH;
+    }
+    result->cost = length * (double)m->cell_size;
+    return NAV_FOUND;
+}
+
+// Without costs, what lies between two links is replaced by the shortest way.
+static nav_status by_links(nav_world *w, const nav_mesh_data *m, double clearance,
+                           nav_result *result) {
+    const nav_waypoint *way = w->coarse.way.data;
+    double cost = 0.0;
+    add_place(w, m, way[0].at, way[0].span, way[0].link);
+    for (uint32_t i = 0, k; i + 1 < w->coarse.count; i = k) {
+        for (k = i + 1; k + 1 < w->coarse.count && way[k].edge != NAV_NONE; k++) {
+        }
+        if (way[i].link != NAV_NO_LINK) {
+            cost += nav_mesh_link_cost(m, way[i].link);
+            add_place(w, m, way[k].at, way[k].span, way[k].link);
+            continue;
+        }
+        double length = add_leg(w, m, way[i].at, way[i].span, way[k].at, way[k].span, way[k].link,
+                                clearance, result);
+        if (length < 0.0) {
+            w->way.count = 0;
+            return NAV_NO_PATH;
+        }
+        cost += length * (double)m->cell_size;
+    }
+    result->cost = cost;
+    return NAV_FOUND;
+}
+
+// With costs the coarse way is given as it is, but for points on straight lines.
+static bool straight(const nav_waypoint *a, const nav_waypoint *b, const nav_waypoint *c) {
+    double across =
+        (b->at.x - a->at.x) * (c->at.z - a->at.z) - (b->at.z - a->at.z) * (c->at.x - a->at.x);
+    double size = core_absf((float)(c->at.x - a->at.x)) + core_absf((float)(c->at.z - a->at.z));
+    return b->edge != NAV_NONE && b->link == NAV_NO_LINK && across < 1e-3 * size &&
+           across > -1e-3 * size;
+}
+static void by_costs(nav_world *w, const nav_mesh_data *m) {
+    const nav_waypoint *way = w->coarse.way.data;
+    uint32_t last = 0;
+    for (uint32_t i = 0; i < w->coarse.count; i++) {
+        bool inner = i > 0 && i + 1 < w->coarse.count;
+        if (!inner || !straight(&way[last], &way[i], &way[i + 1])) {
+            add_place(w, m, way[i].at, way[i].span, way[i].link);
+            last = i;
+        }
+    }
+}
+
+static bool has_open_links(const nav_mesh_data *m) {
+    for (uint32_t i = 0; i < m->links; i++) {
+        if (m->link[i].exists && !m->link[i].desc.closed) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool read_costs(const nav_mesh_query *q, float cost[NAV_AREAS], bool *even) {
+    *even = true;
+    for (uint32_t i = 0; i < NAV_AREAS; i++) {
+        float c = q->area_cost ? q->area_cost[i] : 1.0f;
+        cost[i] = c == 0.0f ? 1.0f : c;
+        if (!(cost[i] >= 1e-3f && (cost[i] <= 1e6f || cost[i] == INFINITY))) {
+            return core_fail("nav_mesh_find_way: area %u costs %g, expected 0.001 to a million, or "
+                             "infinite",
+                             i, (double)cost[i]);
+        }
+        *even = *even && cost[i] == 1.0f;
+    }
+    return true;
+}
+
+static nav_status plan_between(nav_world *w, uint32_t row, nav_ends *ends, const float *cost,
+                               bool even, bool partial, double clearance, nav_result *result) {
+    nav_mesh_data *m = w->mesh.data[row];
+    if (!even || has_open_links(m)) {
+        nav_status status = nav_mesh_coarse(w, m, ends, cost, partial, result);
+        if (status != NAV_FOUND && status != NAV_PARTIAL) {
+            return status;
+        }
+        if (!even) {
+            by_costs(w, m);
+            return status;
+        }
+        return by_links(w, m, clearance, result) == NAV_FOUND ? status : NAV_NO_PATH;
+    }
+    nav_mesh_find_components(m, w->mesh.head[row].version);
+    const uint32_t *component = m->polygon.component, *polygon = m->span.polygon;
+    bool joined = component[polygon[ends->start.span]] == component[polygon[ends->goal.span]];
+    if (!joined && !partial) {
+        return NAV_NO_PATH;
+    }
+    if (!joined) {
+        ends->goal = nav_mesh_nearest_joined(m, ends->start, ends->wanted);
+    }
+    nav_status status = over_ground(w, m, ends, clearance, result);
+    return status == NAV_FOUND && !joined ? NAV_PARTIAL : status;
+}
+
+bool nav_mesh_plan(nav_world *w, const nav_mesh_query *q, double clearance, nav_result *result) {
     *result = (nav_result){.status = NAV_INVALID, .reached = NAV_NO_NODE};
-    const nav_mesh_data *m = find(w, mesh);
-    if (!m) {
+    w->way.count = 0;
+    if (!q || q->cookie != NAV_MESH_QUERY_COOKIE) {
+        return core_fail("nav_mesh_find_way: the query was not made by nav_mesh_query_default()");
+    }
+    float cost[NAV_AREAS];
+    bool even;
+    uint32_t row;
+    const nav_mesh_data *m = nav_mesh_find(w, q->mesh, &row);
+    if (!m || !read_costs(q, cost, &even)) {
         return false;
     }
-    nav_place start = nav_mesh_locate(m, from, 2.0), goal = nav_mesh_locate(m, to, 2.0);
+    nav_ends ends = {.start = nav_mesh_locate(m, q->start, REACH),
+                     .goal = nav_mesh_locate(m, q->goal, q->partial ? ANYWHERE : REACH),
+                     .wanted = q->goal};
     result->status = NAV_NO_PATH;
-    if (start.span == NAV_NONE || goal.span == NAV_NONE) {
+    if (ends.start.span == NAV_NONE || ends.goal.span == NAV_NONE) {
         return true;
     }
-    uint32_t last = nav_mesh_any_angle(m, &w->views, start.at, m->span.polygon[start.span], goal.at,
-                                       m->span.polygon[goal.span], &result->expanded);
-    if (last != NAV_NONE) {
-        const nav_view *v = &w->views.view[last];
-        double dx = goal.at.x - v->root.x, dz = goal.at.z - v->root.z;
-        result->status = NAV_FOUND;
-        result->cost = (v->g + core_sqrt(dx * dx + dz * dz)) * (double)m->cell_size;
-        result->reached = m->span.polygon[goal.span];
-        write_way(w, m, last, start, goal, clearance, result, out, capacity);
+    bool off = ends.goal.square > (REACH + 2e-4) * (REACH + 2e-4);
+    result->status = plan_between(w, row, &ends, cost, even, q->partial, clearance, result);
+    if (result->status == NAV_FOUND && off) {
+        result->status = NAV_PARTIAL;
+    }
+    result->count = w->way.count;
+    result->reached = result->count ? m->span.polygon[ends.goal.span] : NAV_NO_NODE;
+    return true;
+}
+
+bool nav_mesh_find_way(nav_world *w, const nav_mesh_query *query, nav_result *result,
+                       core_vec3 *point, uint32_t *link, uint32_t capacity) {
+    if (!nav_mesh_plan(w, query, 0.0, result)) {
+        return false;
+    }
+    size_t count = CORE_MIN(result->count, capacity);
+    if (point && count) {
+        memcpy(point, w->way.point, count * sizeof *point);
+    }
+    if (link && count) {
+        memcpy(link, w->way.link, count * sizeof *link);
     }
     return true;
 }
 
 bool nav_mesh_search(nav_world *w, nav_mesh mesh, core_vec3 from, core_vec3 to, nav_result *result,
                      core_vec3 *out, uint32_t capacity) {
-    return nav_mesh_way(w, mesh, from, to, 0.0, result, out, capacity);
+    nav_mesh_query query = nav_mesh_query_default();
+    query.mesh = mesh;
+    query.start = from;
+    query.goal = to;
+    return nav_mesh_find_way(w, &query, result, out, NULL, capacity);
 }

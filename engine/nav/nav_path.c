@@ -1,4 +1,6 @@
 // Paths between two points of a graph, planned anew when the graph has changed.
+#include <string.h>
+
 #include "core/hash.h"
 #include "nav/nav_internal.h"
 
@@ -124,12 +126,15 @@ static void plan_on_graph(nav_world *w, const nav_path_head *p, nav_path_points 
 
 static void plan_on_mesh(nav_world *w, const nav_path_head *p, nav_path_points *points,
                          nav_result *result) {
-    nav_mesh_way(w, p->mesh, p->start, p->goal, CORNER_CLEARANCE, result, points->point,
-                 points->capacity);
-    if (result->count > points->capacity) {
-        fit(points, result->count);
-        nav_mesh_way(w, p->mesh, p->start, p->goal, CORNER_CLEARANCE, result, points->point,
-                     points->capacity);
+    nav_mesh_query query = nav_mesh_query_default();
+    query.mesh = p->mesh;
+    query.start = p->start, query.goal = p->goal;
+    query.partial = true;
+    nav_mesh_plan(w, &query, CORNER_CLEARANCE, result);
+    fit(points, result->count);
+    if (result->count) {
+        memcpy(points->point, w->way.point, result->count * sizeof *points->point);
+        memcpy(points->node, w->way.link, result->count * sizeof *points->node);
     }
 }
 
@@ -230,6 +235,11 @@ uint32_t nav_path_node(const nav_world *w, nav_path path, uint32_t i) {
     uint32_t row = path_row(w, path);
     bool none = row == CORE_NO_ROW || i >= w->path.head[row].count || on_mesh(&w->path.head[row]);
     return none ? NAV_NO_NODE : w->path.points[row].node[i];
+}
+uint32_t nav_path_link(const nav_world *w, nav_path path, uint32_t i) {
+    uint32_t row = path_row(w, path);
+    bool none = row == CORE_NO_ROW || i >= w->path.head[row].count || !on_mesh(&w->path.head[row]);
+    return none ? NAV_NO_LINK : w->path.points[row].node[i];
 }
 uint32_t nav_path_plans(const nav_world *w, nav_path path) {
     uint32_t row = path_row(w, path);

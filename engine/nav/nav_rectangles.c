@@ -215,6 +215,8 @@ static void fit_edges(nav_mesh_data *m) {
     if (m->edge_blocks.end > m->edge_room) {
         uint32_t wanted = CORE_MAX(m->edge_blocks.end, m->edge_room + m->edge_room / 4);
         m->edge = core_realloc(m->edge, m->edge_room * sizeof *m->edge, wanted * sizeof *m->edge);
+        m->edge_owner = core_realloc(m->edge_owner, m->edge_room * sizeof *m->edge_owner,
+                                     wanted * sizeof *m->edge_owner);
         m->edge_room = wanted;
     }
     if (m->turn_blocks.end > m->turn_room) {
@@ -242,6 +244,9 @@ void nav_mesh_find_edges(nav_mesh_data *m, uint32_t tile, nav_edge_scratch *scra
     for (uint32_t p = t->polygon.first; p < t->polygon.first + t->polygon.count; p++) {
         m->polygon.edges[p].first += t->edge.first;
         m->polygon.edges[p].end += t->edge.first;
+        for (uint32_t e = m->polygon.edges[p].first; e < m->polygon.edges[p].end; e++) {
+            m->edge_owner[e] = p;
+        }
     }
     const nav_edge *edge = scratch->edge.data;
     for (uint32_t e = 0; e < as.edges; e++) {

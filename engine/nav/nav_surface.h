@@ -98,6 +98,11 @@ typedef struct nav_tile {
     bool edges;    // its edges must be
 } nav_tile;
 
+typedef struct nav_mesh_link {
+    nav_mesh_link_desc desc;
+    bool exists;
+} nav_mesh_link;
+
 typedef struct nav_mesh_data {
     nav_mesh_desc desc;
     core_vec3 origin;
@@ -114,13 +119,32 @@ typedef struct nav_mesh_data {
     nav_polygons polygon;
     nav_blocks edge_blocks, turn_blocks;
     nav_edge *edge;
+    uint32_t *edge_owner; // polygon
     uint32_t edge_room;
     float *turn_y;        // m
     uint8_t *turn_closed; // d: the closed cell there lies between directions d and d + 1
     uint32_t turn_room;
     uint64_t components; // version + 1 for which they were found
-    uint32_t *component_queue, component_room;
+    nav_buffer component_queue;
+    nav_mesh_link *link; // [links]
+    uint32_t links, link_room;
 } nav_mesh_data;
+
+// Records of the coarse search: points on edges, ends of links, the goal.
+#define NAV_SAMPLES 5u // on an edge: its ends and between
+typedef struct nav_coarse_record {
+    double g;
+    uint32_t parent, stamp;
+    uint32_t done, unused;
+} nav_coarse_record;
+typedef struct nav_coarse_scratch {
+    nav_coarse_record *record; // [capacity]
+    nav_buffer heap;           // nav_heap_entry
+    uint32_t capacity, open, stamp;
+    nav_buffer links; // those that are open, by direction
+    nav_buffer way;   // nav_waypoint, from start to goal
+    uint32_t count;
+} nav_coarse_scratch;
 
 typedef struct nav_mesh_head {
     uint64_t content; // hash of spans and links, whatever the order in which tiles were made
@@ -242,9 +266,6 @@ void nav_mesh_dirty(nav_mesh_data *mesh, nav_tiles range);
 
 // ---- searches ----
 
-// nav_mesh_search with bends kept `clearance` cells (0..1) clear of the corners they go round.
-bool nav_mesh_way(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
-                  double clearance, nav_result *result, core_vec3 *out, uint32_t capacity);
 // Moves a point to the surface when it is at most two cells off. False when there is none so near.
 bool nav_mesh_hold(const nav_world *world, nav_mesh mesh, core_vec3 *point);
 
@@ -287,5 +308,40 @@ uint32_t nav_mesh_any_angle(const nav_mesh_data *mesh, nav_view_scratch *scratch
                             uint32_t start_polygon, nav_point goal, uint32_t goal_polygon,
                             uint32_t *expanded);
 void nav_view_scratch_release(nav_view_scratch *scratch);
+
+// nav_mesh_find_way with bends kept `clearance` cells (0..1) clear of the corners they go round.
+// The way stays in world->way until the next search.
+bool nav_mesh_plan(nav_world *world, const nav_mesh_query *query, double clearance,
+                   nav_result *result);
+typedef struct nav_way {
+    core_vec3 *point;
+    uint32_t *link; // to the next point
+    uint32_t count, room;
+} nav_way;
+
+// nav_mesh_reach.c: polygons joined by edges have the same component.
+void nav_mesh_find_components(nav_mesh_data *mesh, uint64_t version);
+// The place nearest to the goal that edges join to `start`.
+nav_place nav_mesh_nearest_joined(const nav_mesh_data *mesh, nav_place start, core_vec3 goal);
+// Of a polygon; its height is that of the span there.
+nav_place nav_mesh_nearest_in(const nav_mesh_data *mesh, uint32_t polygon, core_vec3 goal);
+
+// A point of a coarse way.
+typedef struct nav_waypoint {
+    nav_point at;
+    uint32_t span;    // on the ground there
+    uint32_t edge;    // that it crosses here, NAV_NONE
+    uint32_t polygon; // in which it goes on
+    uint32_t link;    // that leads to the next, NAV_NO_LINK
+} nav_waypoint;
+typedef struct nav_ends {
+    nav_place start, goal;
+    core_vec3 wanted; // the goal asked for
+} nav_ends;
+// Fills world->coarse.way. With `partial`, ends->goal becomes the nearest reachable place.
+nav_status nav_mesh_coarse(nav_world *world, const nav_mesh_data *mesh, nav_ends *ends,
+                           const float *cost, bool partial, nav_result *result);
+double nav_mesh_link_cost(const nav_mesh_data *mesh, uint32_t link); // m of plain ground
+void nav_coarse_release(nav_coarse_scratch *scratch);
 
 #endif

@@ -51,6 +51,9 @@ void nav_world_destroy(nav_world *w) {
         nav_mesh_destroy(w, core_columns_handle(&w->mesh.set, n - 1));
     }
     nav_builder_release(w);
+    nav_coarse_release(&w->coarse);
+    core_free(w->way.point);
+    core_free(w->way.link);
     nav_view_scratch_release(&w->views);
     core_columns_release(&w->mesh.set);
     nav_grid_scratch_release(w);
@@ -180,6 +183,7 @@ size_t nav_world_bytes(const nav_world *w) {
     for (uint32_t row = 0; row < core_columns_count(&w->mesh.set); row++) {
         bytes += nav_mesh_bytes(w->mesh.data[row]);
     }
+    bytes += w->coarse.capacity * sizeof(nav_coarse_record) + w->coarse.heap.bytes;
     bytes += w->views.capacity * (sizeof(nav_view) + sizeof(uint32_t)) +
              w->views.turns * (sizeof(double) + sizeof(uint32_t));
     if (w->grid_scratch) {

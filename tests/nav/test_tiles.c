@@ -7,6 +7,7 @@
 #include "core/jobs.h"
 #include "core/rng.h"
 #include "nav/nav.h"
+#include "support/nav_boxes.h"
 #include "unity.h"
 
 static nav_world *world;
@@ -20,30 +21,6 @@ void tearDown(void) {
     core_clear_error();
 }
 
-// ---- boxes ----
-
-typedef struct box {
-    float vertex[24];
-    uint32_t index[36];
-    core_soup_data soup;
-} box;
-static const core_soup_data *box_soup(box *b, core_vec3 low, core_vec3 high) {
-    static const uint8_t face[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (uint32_t k = 0; k < 8; k++) {
-        b->vertex[3 * k] = k & 1 ? high.x : low.x;
-        b->vertex[3 * k + 1] = k & 2 ? high.y : low.y;
-        b->vertex[3 * k + 2] = k & 4 ? high.z : low.z;
-    }
-    for (int f = 0; f < 6; f++) {
-        const uint32_t corner[6] = {face[f][0], face[f][1], face[f][2],
-                                    face[f][0], face[f][2], face[f][3]};
-        memcpy(b->index + 6 * f, corner, sizeof corner);
-    }
-    b->soup = (core_soup_data){8, 12, b->vertex, b->index, NULL};
-    return &b->soup;
-}
-
 static nav_mesh_desc tiled(float side) {
     nav_mesh_desc d = nav_mesh_desc_default();
     d.cell_size = 0.25f;
@@ -52,9 +29,9 @@ static nav_mesh_desc tiled(float side) {
     return d;
 }
 static nav_mesh flat(nav_world *w, float side) {
-    box b;
+    nav_box b;
     nav_mesh_desc d = tiled(side);
-    return nav_mesh_build(w, box_soup(&b, core_v3(0, -1, 0), core_v3(side, 0, side)), &d);
+    return nav_mesh_build(w, nav_box_soup(&b, core_v3(0, -1, 0), core_v3(side, 0, side)), &d);
 }
 
 typedef struct change {
@@ -79,11 +56,11 @@ static change random_change(core_rng *rng) {
     return c;
 }
 static void apply(nav_world *w, nav_mesh m, const change *c) {
-    box b;
+    nav_box b;
     core_aabb aabb = {c->low, c->high};
     bool good = c->remove ? nav_mesh_put(w, m, c->key, NULL)
                 : c->mark ? nav_mesh_mark(w, m, c->key, &aabb, c->area)
-                          : nav_mesh_put(w, m, c->key, box_soup(&b, c->low, c->high));
+                          : nav_mesh_put(w, m, c->key, nav_box_soup(&b, c->low, c->high));
     TEST_ASSERT_TRUE(good);
 }
 
@@ -161,16 +138,17 @@ static void threads_do_not_matter(void) {
 
 static void only_its_tiles_wait(void) {
     nav_mesh m = flat(world, 64); // 16 by 16 tiles of 4 m, and a last row
-    box b;
-    nav_mesh_put(world, m, 7, box_soup(&b, core_v3(30, 0, 30), core_v3(31, 2, 31)));
+    nav_box b;
+    nav_mesh_put(world, m, 7, nav_box_soup(&b, core_v3(30, 0, 30), core_v3(31, 2, 31)));
     uint32_t waiting = nav_mesh_waiting(world, m);
     TEST_ASSERT_TRUE(waiting >= 1 && waiting <= 4);
-    nav_mesh_put(world, m, 7, box_soup(&b, core_v3(30, 0, 30), core_v3(31, 2, 31)));
+    nav_mesh_put(world, m, 7, nav_box_soup(&b, core_v3(30, 0, 30), core_v3(31, 2, 31)));
     TEST_ASSERT_EQUAL_UINT32(waiting, nav_mesh_waiting(world, m));
     nav_mesh_update(world, m);
-    nav_mesh_put(world, m, 7, box_soup(&b, core_v3(30, 0, 30), core_v3(31, 2, 31))); // the same
+    nav_mesh_put(world, m, 7, nav_box_soup(&b, core_v3(30, 0, 30), core_v3(31, 2, 31))); // the same
     TEST_ASSERT_EQUAL_UINT32(0, nav_mesh_waiting(world, m));
-    nav_mesh_put(world, m, 7, box_soup(&b, core_v3(-90, 0, 30), core_v3(-80, 2, 31))); // outside
+    nav_mesh_put(world, m, 7,
+                 nav_box_soup(&b, core_v3(-90, 0, 30), core_v3(-80, 2, 31))); // outside
     nav_mesh_update(world, m);
     TEST_ASSERT_EQUAL_HEX64(nav_mesh_hash(world, flat(world, 64)), nav_mesh_hash(world, m));
 }
@@ -181,10 +159,10 @@ static void tiles_change_no_way(void) {
     float vertex[24 * 40];
     uint32_t index[36 * 40], n = 0;
     for (; n < 40; n++) {
-        box b;
+        nav_box b;
         change c = random_change(&rng);
         core_vec3 low = n ? c.low : core_v3(0, -1, 0), high = n ? c.high : core_v3(32, 0, 32);
-        box_soup(&b, low, high);
+        nav_box_soup(&b, low, high);
         memcpy(vertex + 24 * n, b.vertex, sizeof b.vertex);
         for (uint32_t i = 0; i < 36; i++) {
             index[36 * n + i] = b.index[i] + 8 * n;
@@ -219,8 +197,8 @@ static void paths_follow_changes(void) {
     core_vec3 a = {4, 0, 16}, b = {28, 0, 16};
     nav_path path = nav_path_create_on_mesh(world, m, a, b);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 24.0, nav_path_cost(world, path));
-    box wall;
-    nav_mesh_put(world, m, 1, box_soup(&wall, core_v3(16, 0, 0), core_v3(16.5f, 3, 28)));
+    nav_box wall;
+    nav_mesh_put(world, m, 1, nav_box_soup(&wall, core_v3(16, 0, 0), core_v3(16.5f, 3, 28)));
     for (int i = 0; i < 60; i++) {
         nav_world_step(world, 1.0f / 60.0f);
     }
@@ -238,7 +216,7 @@ static void paths_follow_changes(void) {
 static void error_wish_holds(void) {
     const float wishes[] = {0.8f, 0.4f, 0.15f};
     for (int k = 0; k < 3; k++) {
-        box wall, ground;
+        nav_box wall, ground;
         nav_mesh_desc d = nav_mesh_desc_default();
         d.max_error = wishes[k];
         d.tile_cells = 64;
@@ -246,8 +224,8 @@ static void error_wish_holds(void) {
         d.bounds = (core_aabb){{0.013f, 0, 0.007f}, {20, 0, 20}};
         core_vec3 low = core_v3(7.21f, 0, 6.17f), high = core_v3(9.03f, 2, 13.77f);
         nav_mesh m =
-            nav_mesh_build(world, box_soup(&ground, core_v3(0, -1, 0), core_v3(20, 0, 20)), &d);
-        nav_mesh_put(world, m, 1, box_soup(&wall, low, high));
+            nav_mesh_build(world, nav_box_soup(&ground, core_v3(0, -1, 0), core_v3(20, 0, 20)), &d);
+        nav_mesh_put(world, m, 1, nav_box_soup(&wall, low, high));
         nav_mesh_update(world, m);
         core_rng rng = core_rng_make(3, 1);
         int covered = 0, not = 0;
@@ -266,8 +244,8 @@ static void error_wish_holds(void) {
 
 static void bad_changes(void) {
     nav_mesh_desc d = nav_mesh_desc_default();
-    box b;
-    const core_soup_data *soup = box_soup(&b, core_v3(0, -1, 0), core_v3(8, 0, 8));
+    nav_box b;
+    const core_soup_data *soup = nav_box_soup(&b, core_v3(0, -1, 0), core_v3(8, 0, 8));
     nav_mesh whole = nav_mesh_build(world, soup, &d), m = flat(world, 8);
     TEST_ASSERT_FALSE(nav_mesh_put(world, whole, 1, soup));
     TEST_ASSERT_NOT_NULL(strstr(core_last_error(), "tile_cells"));
