@@ -275,6 +275,21 @@ static int event_code(const gfx_event *e) {
                                              : e->code;
 }
 
+// A key that goes down and up within one step is down for that step: a slow frame loses no tap.
+static void set_key(app_input *in, int code, bool pressed) {
+    in->tapped[code] = !pressed && in->fresh[code];
+    in->fresh[code] |= pressed;
+    in->down[code] = pressed || in->tapped[code];
+}
+
+static void end_taps(app_input *in) {
+    for (int i = 0; i < APP_INPUT_CODES; i++) {
+        in->down[i] &= !in->tapped[i];
+    }
+    memset(in->fresh, 0, sizeof in->fresh);
+    memset(in->tapped, 0, sizeof in->tapped);
+}
+
 static void apply(app_input *in, const gfx_event *e) {
     int code = event_code(e);
     switch (e->type) {
@@ -282,7 +297,7 @@ static void apply(app_input *in, const gfx_event *e) {
     case GFX_EVENT_MOUSE_BUTTON:
     case GFX_EVENT_PAD_BUTTON:
         if (code >= 0 && code < APP_INPUT_CODES) {
-            in->down[code] = e->pressed != 0;
+            set_key(in, code, e->pressed != 0);
         }
         break;
     case GFX_EVENT_PAD:
@@ -312,6 +327,7 @@ static void apply(app_input *in, const gfx_event *e) {
 
 void app_input_step(app_input *in, const gfx_event *event, uint32_t count) {
     in->move_x = in->move_y = in->scroll_x = in->scroll_y = 0.0f;
+    end_taps(in);
     for (uint32_t i = 0; i < count; i++) {
         apply(in, &event[i]);
     }

@@ -29,6 +29,8 @@ typedef struct app_input {
     gfx_event queue[APP_MAX_EVENTS]; // since the last step
     uint32_t queued, dropped;
     bool down[APP_INPUT_CODES];
+    // Went down in this step; and went up again in it: such a tap is held until the next one.
+    bool fresh[APP_INPUT_CODES], tapped[APP_INPUT_CODES];
     float pad[APP_PAD_AXES]; // sticks -1..1, triggers 0..1, outside the dead zone
     float dead_zone;         // share of a stick's way that counts as rest, [0, 0.9]
     float mouse_x, mouse_y, move_x, move_y, scroll_x, scroll_y; // moves and scroll: of this step

@@ -6,13 +6,17 @@
 CORE_COLUMNS_DEFINE(phys_triggers, PHYS_TRIGGER_COLUMNS)
 CORE_COLUMNS_DEFINE(phys_visits, PHYS_VISIT_COLUMNS)
 
-void phys_event_push(phys_event_list *list, const phys_event *event) {
+static void reserve(phys_event_list *list) {
     if (list->count == list->capacity) {
         uint32_t grown = list->capacity ? list->capacity * 2 : 64;
         list->event = core_realloc(list->event, list->capacity * sizeof(phys_event),
                                    grown * sizeof(phys_event));
         list->capacity = grown;
     }
+}
+
+void phys_event_push(phys_event_list *list, const phys_event *event) {
+    reserve(list);
     list->event[list->count++] = *event;
 }
 
@@ -68,6 +72,7 @@ phys_trigger phys_trigger_create(phys_world *w, const phys_trigger_desc *d) {
         return CORE_NULL_HANDLE;
     }
     phys_triggers *t = &w->triggers;
+    reserve(&w->events); // the first visit may come long after warm-up
     core_handle h = core_columns_add(&t->set);
     if (core_handle_is_null(h)) {
         return h;

@@ -1,6 +1,9 @@
 // Force fields: accelerations that depend on where a body is.
 #include "phys/world.h"
 
+#define TIMED                                                                                      \
+    8 // reading the clock costs as much as a field: a body is timed in one step of so many
+
 CORE_COLUMNS_DEFINE(phys_fields, PHYS_FIELD_COLUMNS)
 
 phys_field_desc phys_field_desc_default(phys_field_type type) {
@@ -100,4 +103,14 @@ core_vec3 phys_field_acceleration(const phys_world *w, core_vec3 at, uint32_t la
         sum = core_v3_add(sum, pull(f, at));
     }
     return sum;
+}
+
+core_vec3 phys_field_pull(const phys_world *w, core_vec3 at, uint32_t row) {
+    if ((row + w->stamp) % TIMED) {
+        return phys_field_acceleration(w, at, w->bodies.layer[row]);
+    }
+    uint64_t begin = phys_spent_begin(w->metrics);
+    core_vec3 a = phys_field_acceleration(w, at, w->bodies.layer[row]);
+    phys_spent_end(&w->spent->fields, begin, TIMED);
+    return a;
 }

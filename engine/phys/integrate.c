@@ -25,7 +25,7 @@ void phys_integrate_velocity(phys_world *w, float h) {
         a = core_v3_mad(a, b->force[i], b->im[i]);
         if (fields) { // of the present place: with the new velocity this stays symplectic
             core_vec3 at = phys_get3(b->cx, b->cy, b->cz, i);
-            a = core_v3_add(a, phys_field_acceleration(w, at, b->layer[i]));
+            a = core_v3_add(a, phys_field_pull(w, at, i));
         }
         core_vec3 v = core_v3_mad(phys_get3(b->vx, b->vy, b->vz, i), a, h);
         core_vec3 o = phys_get3(b->wx, b->wy, b->wz, i);
@@ -177,7 +177,7 @@ static core_vec3 acceleration(void *ctx, core_vec3 p, core_vec3 v, float t) {
     const phys_bodies *b = &f->world->bodies;
     core_vec3 a = core_v3_scale(f->world->gravity, b->gravity_scale[f->row]);
     a = core_v3_mad(a, b->force[f->row], b->im[f->row]);
-    a = core_v3_add(a, phys_field_acceleration(f->world, p, b->layer[f->row]));
+    a = core_v3_add(a, phys_field_pull(f->world, p, f->row));
     return core_v3_mad(a, v, -b->linear_damping[f->row]);
 }
 

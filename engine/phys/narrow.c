@@ -69,7 +69,9 @@ static void search_pair(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t 
         if (m->apart > PHYS_MARGIN + way) {
             return;
         }
+        uint64_t begin = phys_spent_begin(w->metrics);
         sweep_pair(&a, &b, dt, m);
+        phys_spent_end(&w->spent->ccd, begin, 1);
     }
 }
 

@@ -98,7 +98,7 @@ static core_vec3 pull_on(const phys_world *w, uint32_t i, const float *moved) {
     a = core_v3_mad(a, b->force[i], b->im[i]);
     if (core_columns_count(&w->fields.set) != 0) {
         core_vec3 at = core_v3(b->cx[i] + moved[0], b->cy[i] + moved[1], b->cz[i] + moved[2]);
-        a = core_v3_add(a, phys_field_acceleration(w, at, b->layer[i]));
+        a = core_v3_add(a, phys_field_pull(w, at, i));
     }
     return a;
 }

@@ -96,6 +96,7 @@ phys_world *phys_world_create(const phys_world_desc *d) {
         return NULL;
     }
     phys_world *w = core_alloc(sizeof *w);
+    w->spent = core_alloc(sizeof *w->spent);
     w->jobs = d->jobs;
     w->metrics = d->metrics;
     w->gravity = d->gravity;
@@ -140,6 +141,7 @@ void phys_world_destroy(phys_world *w) {
     phys_hulls_release(w);
     phys_meshes_release(w);
     phys_trees_release(w);
+    core_free(w->spent);
     core_free(w);
 }
 
@@ -322,6 +324,7 @@ bool phys_world_step(phys_world *w, float dt) {
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
     phys_joints_break(w);
     finish_step(w, dt);
+    phys_spent_tell(w->spent, w->metrics);
     phys_movers_update(w, dt, false);
     phys_events_triggers(w);
     core_stage_end(w->metrics, CORE_STAGE_PHYS);

@@ -7,6 +7,7 @@
 #include "phys/motion.h"
 #include "phys/mover.h"
 #include "phys/phys.h"
+#include "phys/spent.h"
 #include "phys/vec.h"
 
 #include "core/memory.h"
@@ -284,6 +285,7 @@ typedef struct phys_static_log {
 struct phys_world {
     core_jobs *jobs;
     core_metrics *metrics;
+    phys_spent *spent;
     core_vec3 gravity;
     const phys_broad_method *broad;
     const phys_solver_method *solver;
@@ -509,6 +511,8 @@ void phys_events_contacts(phys_world *world, float dt);
 void phys_events_contact_end(phys_world *world, phys_event_list *list, uint32_t sa, uint32_t sb);
 // Sum of the fields at a place; gravity excluded.
 core_vec3 phys_field_acceleration(const phys_world *world, core_vec3 at, uint32_t layer);
+// The same for the body in `row`, timed now and then.
+core_vec3 phys_field_pull(const phys_world *world, core_vec3 at, uint32_t row);
 bool phys_geom_contains(const phys_geom *geom, core_vec3 point);
 phys_geom phys_geom_make(phys_shape_type type, core_vec3 position, core_quat rotation,
                          core_vec3 half, float radius);

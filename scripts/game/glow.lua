@@ -50,6 +50,9 @@ function glow.build(fireflies)
   phys.setCollisionRule("lantern", "fox", false)
   phys.setCollisionRule("lantern", "spirit", false)
   for _, p in ipairs(layout.swings) do newSwing(p) end
+  -- A draught along the water; `sway` adds the gusts.
+  phys.newField{ type = "uniform", acceleration = { 0.5, 0, 0 }, layer = "lantern",
+    shape = "box", size = { 24, 8, 12 }, position = { 0, 1, -2.5 } }
   gfx.newLight{ position = { -4, 2.9, 6 }, color = { 0.35, 0.65, 1 }, intensity = 3, radius = 6 }
   glow.heart = gfx.newLight{ position = { 0, 2.9, -33 }, color = WARM, intensity = 0.3, radius = 22 }
 end

@@ -69,6 +69,13 @@ end
 
 local states = {}
 
+-- Walks on and looks at nothing for a while.
+function states.leave(_, _, _, _, dt)
+  wait = wait - dt
+  if wait < 0 then turn("patrol", 1.3) end
+  if agent:getState() ~= "walking" then goTo(layout.patrol[#layout.patrol]) end
+end
+
 function states.patrol(seen, x, y, z)
   if seen then
     guard.chases = guard.chases + 1
@@ -121,7 +128,7 @@ function guard.step(dt, fox)
   local sx, sz = -math.sin(h), -math.cos(h)
   spot:setPosition(gx + 0.7 * sx, gy + 1.05, gz + 0.7 * sz)
   spot:setDirection(sx, -0.25, sz)
-  local angry = guard.state ~= "patrol"
+  local angry = guard.state == "chase" or guard.state == "search"
   spot:setColor(1, angry and 0.25 or 0.8, angry and 0.12 or 0.5, 14)
   local dx, dz = x - gx - 0.5 * sx, z - gz - 0.5 * sz
   return guard.state == "chase" and not fox.spirit and dx * dx + dz * dz < CATCH * CATCH
@@ -135,6 +142,13 @@ end
 function guard.resume()
   if guard.state ~= "patrol" then turn("patrol", 1.3) end
   goTo(layout.patrol[round])
+end
+
+-- It has had its fox: the fox comes to, and gets a start.
+function guard.leave()
+  wait = 5
+  turn("leave", 1.8)
+  goTo(layout.patrol[#layout.patrol])
 end
 
 return guard

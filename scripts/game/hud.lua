@@ -9,13 +9,18 @@ function hud.say(text)
   if text ~= hint then hint, since = text, corsac.getTime() end
 end
 
+-- Height of a line in pixels, within what fonts are drawn at.
+local function pixels(size)
+  return math.max(4, math.min(size * height, 256))
+end
+
 -- Text about the middle of the frame; y and size in shares of its height.
 local function center(text, y, size, color)
-  gfx.text(text, { x = width / 2, y = y * height, size = size * height, align = 0.5, font = "sans", color = color })
+  gfx.text(text, { x = width / 2, y = y * height, size = pixels(size), align = 0.5, font = "sans", color = color })
 end
 
 local function left(text, y, size, color)
-  gfx.text(text, { x = 0.04 * height, y = y * height, size = size * height, font = "sans", color = color })
+  gfx.text(text, { x = 0.04 * height, y = y * height, size = pixels(size), font = "sans", color = color })
 end
 
 local function dim(alpha)

@@ -1,13 +1,13 @@
 -- Foxlight: a fox wakes the lanterns of a walled garden. Two minutes, from title to end.
 --
 --   corsac run scripts/game                              play
---   corsac run scripts/game --headless --set bot=true    a bot plays it through
-local data = corsac.mods.data("garden", { fireflies = 220, gravity = 9.81 })
+--   corsac run scripts/game --headless --set bot=play    a bot plays it (caught, fall: its mishaps)
+--   corsac run scripts/game --mod scripts/mods/midsummer
 local layout, garden, glow, toys = require("layout"), require("garden"), require("glow"), require("toys")
 local fox, guard, camera, hud = require("fox"), require("guard"), require("camera"), require("hud")
 local sound, bot = require("sound"), require("bot")
 local input, gfx = corsac.input, corsac.gfx
-local botPlays = corsac.param("bot", false)
+local plan = corsac.param("bot", "")
 
 local game = { state = "title", since = 0, time = 0, checkpoint = 1, key = false, door = false, passed = false,
   crossed = false, caught = 0, fallen = 0 }
@@ -77,7 +77,7 @@ local function comeTo(how)
   sound.play(how == "caught" and "caught" or "splash", 0.8)
   fox.setSpirit(false)
   fox.hurt()
-  guard.resume()
+  guard.leave()
   hud.fade = 1
   corsac.tween{ length = 1.2, target = hud, goals = { fade = 0 }, ease = "in" }
   fox.place(layout.checkpoints[game.checkpoint])
@@ -153,6 +153,7 @@ local function openDoor(body)
 end
 
 function corsac.load()
+  local data = corsac.mods.data("garden", { fireflies = 220, gravity = 9.81 })
   corsac.phys.setGravity(0, -data.gravity, 0)
   garden.build()
   glow.build(data.fireflies)
@@ -167,7 +168,22 @@ function corsac.load()
     corsac.phys.newTrigger{ size = { 4, 3, 3.4 }, position = { 0, 2, -23.4 }, layer = layer, onEnter = openDoor }
   end
   enter("title")
-  if botPlays then bot.start(game, fox, guard, glow, toys) end
+  if plan ~= "" then bot.start(plan, game, fox, guard, glow, toys) end
+end
+
+-- What a run came to, for its metrics.
+local function report()
+  local set = corsac.metrics.set
+  local x, y, z = fox.position()
+  set("x", x)
+  set("y", y)
+  set("z", z)
+  set("playing", game.state == "play" and 1 or 0)
+  set("finished", game.state == "end" and 1 or 0)
+  for _, name in ipairs{ "key", "door", "passed", "crossed" } do set(name, game[name] and 1 or 0) end
+  for _, name in ipairs{ "caught", "fallen", "time" } do set(name, game[name]) end
+  set("escaped", guard.escapes)
+  set("lanterns", glow.lit)
 end
 
 function corsac.fixed(dt)
@@ -179,7 +195,7 @@ function corsac.fixed(dt)
     keyEntity:setPosition(layout.key[1], layout.key[2] + 0.35 + 0.07 * math.sin(2 * t), layout.key[3])
     keyEntity:setRotation(0, math.sin(0.6 * t), 0, math.cos(0.6 * t))
   end
-  if botPlays then bot.step(dt) end
+  report()
 end
 
 function corsac.update(dt)

@@ -1,8 +1,34 @@
--- What gives way: the see-saw, the rope bridge, the door and the veil. All but the veil are joints.
+-- What gives way: see-saw, rope bridge and door, which are joints; the veil; chestnuts that fall.
 local layout, garden, sound = require("layout"), require("garden"), require("sound")
 local scene, phys, gfx = corsac.scene, corsac.phys, corsac.gfx
 local toys = { doorOpen = false }
-local hinges = {}
+local hinges, nuts = {}, {}
+
+-- What falls or tips is heard by how hard it strikes.
+local function knock(name, gain, least)
+  return function(self, _, speed)
+    if speed > least then
+      local x, y, z = self:getPosition()
+      sound.play(name, math.min(gain * speed, 0.6), x, y, z, 0.9 + 0.2 * math.random())
+    end
+  end
+end
+
+-- Every few seconds a chestnut drops from one of the trees; the oldest is picked up for it.
+local function drop()
+  local tree = layout.plants[math.random(10)]
+  local x, z = tree[2] + 1.6 * math.random() - 0.8, tree[4] + 1.6 * math.random() - 0.8
+  if #nuts < 10 then
+    nuts[#nuts + 1] = scene.spawn{ position = { x, tree[3] + 3, z }, mesh = "sphere", color = { 0.16, 0.07, 0.03 },
+      body = { shape = "sphere", radius = 0.06, density = 600, restitution = 0.3, layer = "nut", angularDamping = 1.5,
+        onContact = knock("step_wood1", 0.08, 0.6) } }
+  else
+    local nut = table.remove(nuts, 1)
+    nut:setPosition(x, tree[3] + 3, z)
+    nut:getBody():setVelocity(0, -1, 0)
+    nuts[#nuts + 1] = nut
+  end
+end
 
 -- The board's heavy end lies in the court; a fox on the light end brings it down on the terrace.
 local function seesaw()
@@ -10,7 +36,7 @@ local function seesaw()
   garden.put("trestle", x, 0, z)
   local board = scene.spawn{ name = "seesaw", position = { x, height, z }, tags = { "wood" },
     model = garden.model("board"), rotation = { axis = { 1, 0, 0 }, angle = 0.27 },
-    body = { layer = "seesaw", angularDamping = 0.6, friction = 0.8,
+    body = { layer = "seesaw", angularDamping = 0.6, friction = 0.8, onContact = knock("step_wood2", 0.5, 0.4),
       shapes = { { shape = "box", size = { 1, 0.08, 5.2 }, density = 40 },
         { shape = "box", size = { 0.9, 0.1, 0.3 }, density = 90, position = { 0, -0.02, 2.4 } } } } }
   phys.newJoint{ type = "revolute", b = board:getBody(), anchor = { x, height, z }, axis = { 1, 0, 0 },
@@ -74,6 +100,8 @@ local function newVeil()
 end
 
 function toys.build()
+  phys.setCollisionRule("nut", "spirit", false)
+  corsac.every(1.7, drop)
   seesaw()
   bridge()
   door()

@@ -55,6 +55,20 @@ class Input(SceneCase):
                       "key:x:1 mouse:mouse1:1:12", done.err.replace(".0", ""))
         self.assertIn("bound x -a,-left,d,right,pad_leftx", done.err)
 
+    def test_a_tap_shorter_than_a_step_is_held_for_one(self):
+        done = self.run_scene(CONF + """
+            local held = {}
+            function corsac.fixed()
+              local step = corsac.getStep()
+              if step == 3 then corsac.input.press("space") corsac.input.release("space") end
+              if step == 6 then
+                for _ = 1, 2 do corsac.input.press("a") corsac.input.release("a") end
+              end
+              held[#held + 1] = (corsac.input.isDown("jump") and "j" or "-") .. corsac.input.getAxis("move")
+              if step == 9 then corsac.log(table.concat(held, " ")) end
+            end""", "--steps", 10)
+        self.assert_exit(done, 0, "-0 -0 -0 -0 j0 -0 -0 --1 -0 -0")
+
     def test_recorded_and_replayed_by_the_same_stream(self):
         file = self.dir / "walk.crr"
         first = self.run_scene(WALK, "--steps", 30, "--record", file, "--hash", "--quiet")

@@ -1,0 +1,1 @@
+return { name = "midsummer", version = "1.0" }
