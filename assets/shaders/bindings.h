@@ -132,7 +132,15 @@ struct gfx_shadow_block {
 struct gfx_cluster_block { // what cluster.comp knows of the grid
     GFX_UVEC4(size);       // columns, rows, slices; lights
     GFX_VEC4(lens);        // half extents at depth 1; 1 with perspective
+    GFX_VEC4(margin);      // of a column, a row; of a slice as part of its depth; least depth (m)
     GFX_VEC4(depth[17]);   // bounds of the slices
+};
+
+struct gfx_cluster_light_block { // view space: x right, y up, depth ahead
+    GFX_VEC4(sphere);            // w: radius
+    GFX_VEC4(apex);              // of its cone; w: sine of the half angle
+    GFX_VEC4(axis);              // w: cosine, 0 without a cone
+    GFX_VEC4(range);             // x: m from the apex
 };
 
 #define GFX_EXPOSURE_BINS  128   // of log2 luminance

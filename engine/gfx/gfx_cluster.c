@@ -76,6 +76,7 @@ static void *room(void **block, size_t *bytes, size_t need) {
 
 void gfx_cluster_lights_release(gfx_cluster_lights *lights) {
     core_free(lights->block);
+    core_free(lights->cone);
     *lights = (gfx_cluster_lights){0};
 }
 
@@ -88,9 +89,11 @@ void gfx_cluster_lights_reserve(gfx_cluster_lights *lights, uint32_t count) {
         lights->y = lights->x + n;
         lights->depth = lights->y + n;
         lights->radius = lights->depth + n;
+        lights->cone = core_alloc(n * sizeof *lights->cone);
         lights->capacity = n;
     }
     lights->count = count;
+    lights->spots = 0;
 }
 
 void gfx_clusters_release(gfx_clusters *c) {
@@ -164,6 +167,17 @@ static uint32_t box_lights(const box *b, const gfx_cluster_lights *l, uint32_t *
     return n;
 }
 
+// Drops from a cell's list what its cone does not reach.
+static uint32_t drop_missing(const gfx_cluster_lights *l, const gfx_cluster_cell_bounds *b,
+                             uint32_t *list, uint32_t count) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        list[kept] = list[i];
+        kept += gfx_cluster_cone_reaches(l, list[i], b);
+    }
+    return kept;
+}
+
 static void naive(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_cluster_lights *l) {
     uint32_t cells = gfx_cluster_cells(g), cell = 0;
     gfx_clusters_reserve_offsets(c, cells);
@@ -173,7 +187,13 @@ static void naive(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_cluster_
             for (uint32_t i = 0; i < g->columns; ++i, ++cell) {
                 box b = cell_box(g, i, j, k);
                 extend_lights(c, l->count);
-                c->total += box_lights(&b, l, c->light + c->total);
+                uint32_t *list = c->light + c->total, found = box_lights(&b, l, list);
+                if (l->spots) {
+                    gfx_cluster_cell_bounds bounds;
+                    gfx_cluster_cell_bounds_of(g, i, j, k, &bounds);
+                    found = drop_missing(l, &bounds, list, found);
+                }
+                c->total += found;
                 c->offset[cell + 1] = c->total;
             }
         }
@@ -241,6 +261,16 @@ void gfx_cluster_slice_bounds(const gfx_cluster_grid *g, uint32_t k, float *lo, 
     *hi = g->depth[k + 1] + margin;
 }
 
+void gfx_cluster_cell_bounds_of(const gfx_cluster_grid *g, uint32_t column, uint32_t row,
+                                uint32_t slice, gfx_cluster_cell_bounds *out) {
+    float mx = GFX_CLUSTER_TILE_MARGIN * 2.0f * g->tan_x / (float)g->columns,
+          my = GFX_CLUSTER_TILE_MARGIN * 2.0f * g->tan_y / (float)g->rows;
+    *out = (gfx_cluster_cell_bounds){.x = {g->x[column] - mx, g->x[column + 1] + mx},
+                                     .y = {g->y[row] - my, g->y[row + 1] + my},
+                                     .orthographic = g->orthographic};
+    gfx_cluster_slice_bounds(g, slice, &out->depth[0], &out->depth[1]);
+}
+
 static bool slice_rect(const gfx_cluster_grid *g, const gfx_cluster_lights *l, uint32_t n,
                        uint32_t k, rect *out) {
     float a, b;
@@ -288,6 +318,28 @@ static uint32_t light_rects(const gfx_cluster_grid *g, const gfx_cluster_lights 
     return count;
 }
 
+// Each cell of a rectangle that its light reaches is counted or, with a list, given the light.
+static void visit_rect(const gfx_cluster_grid *g, const gfx_cluster_lights *l, const rect *t,
+                       uint32_t *counts, uint32_t *list) {
+    bool spot = l->spots && l->cone[t->light].cosine > 0.0f;
+    for (uint32_t row = t->r0; row <= t->r1; ++row) {
+        uint32_t first = (t->slice * g->rows + row) * g->columns;
+        for (uint32_t column = t->c0; column <= t->c1; ++column) {
+            gfx_cluster_cell_bounds b;
+            if (spot) {
+                gfx_cluster_cell_bounds_of(g, column, row, t->slice, &b);
+                if (gfx_cluster_cone_misses(&l->cone[t->light], &b)) {
+                    continue;
+                }
+            }
+            uint32_t at = counts[first + column]++;
+            if (list) {
+                list[at] = t->light;
+            }
+        }
+    }
+}
+
 // Rectangles come in the order of their lights, so every list ends up ascending.
 static void per_light(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_cluster_lights *l) {
     uint32_t cells = gfx_cluster_cells(g);
@@ -297,26 +349,15 @@ static void per_light(gfx_clusters *c, const gfx_cluster_grid *g, const gfx_clus
     gfx_clusters_reserve_offsets(c, cells);
     // Offsets are kept one cell ahead while writing, so that they end up in place.
     uint32_t *counts = c->offset + 1;
-    for (int pass = 0; pass < 2; ++pass) {
-        for (uint32_t i = 0; i < count; ++i) {
-            const rect *t = &rects[i];
-            for (uint32_t row = t->r0; row <= t->r1; ++row) {
-                uint32_t cell = (t->slice * g->rows + row) * g->columns;
-                for (uint32_t at = cell + t->c0; at <= cell + t->c1; ++at) {
-                    if (pass == 0) {
-                        counts[at]++;
-                    } else {
-                        c->light[counts[at]++] = t->light;
-                    }
-                }
-            }
-        }
-        if (pass == 0) {
-            sum_offsets(c, cells);
-            gfx_clusters_reserve_lights(c, c->offset[cells]);
-            memmove(counts, c->offset, cells * sizeof *counts);
-            c->offset[0] = 0;
-        }
+    for (uint32_t i = 0; i < count; ++i) {
+        visit_rect(g, l, &rects[i], counts, NULL);
+    }
+    sum_offsets(c, cells);
+    gfx_clusters_reserve_lights(c, c->offset[cells]);
+    memmove(counts, c->offset, cells * sizeof *counts);
+    c->offset[0] = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        visit_rect(g, l, &rects[i], counts, c->light);
     }
 }
 

@@ -3,12 +3,14 @@
 //
 // The grid is columns x rows x slices over the view volume. Cell (i, j, k) has the number
 // (k * rows + j) * columns + i; row 0 is at the bottom, slice 0 at the camera. Every method gives
-// each cell an ascending list that holds each light whose sphere touches it.
+// each cell an ascending list that holds each light whose sphere, and cone if it has one, touches
+// it.
 #ifndef GFX_CLUSTER_H
 #define GFX_CLUSTER_H
 
 #include "core/jobs.h"
 #include "core/math.h"
+#include "gfx/gfx_cluster_cone.h"
 
 enum { GFX_CLUSTER_SIDE = 64 }; // most columns, rows, slices
 
@@ -41,12 +43,13 @@ uint32_t gfx_cluster_cell(const gfx_cluster_grid *grid, float u, float v, float 
 // the margin for the rounding of everything that follows. Columns are 64-byte aligned and may be
 // read and written up to a multiple of CORE_LANES.
 typedef struct gfx_cluster_lights {
-    uint32_t count;
+    uint32_t count, spots; // spots: how many have a cone
     float *x, *y, *depth, *radius;
-    void *block;     // private
-    size_t capacity; // of each column, in lights; private
+    gfx_cluster_cone *cone; // [count], read when spots > 0
+    void *block;            // private
+    size_t capacity;        // of each column, in lights; private
 } gfx_cluster_lights;
-// Makes room for `count` spheres. Contents are lost.
+// Makes room for `count` spheres without cones. Contents are lost.
 void gfx_cluster_lights_reserve(gfx_cluster_lights *lights, uint32_t count);
 void gfx_cluster_lights_release(gfx_cluster_lights *lights);
 
@@ -88,6 +91,15 @@ static inline void *gfx_cluster_align(void *block) {
 void gfx_clusters_reserve_offsets(gfx_clusters *c, uint32_t cells);
 void gfx_clusters_reserve_lights(gfx_clusters *c, size_t total);
 void gfx_cluster_slice_bounds(const gfx_cluster_grid *g, uint32_t k, float *lo, float *hi);
+// Corners of a cell, widened too.
+void gfx_cluster_cell_bounds_of(const gfx_cluster_grid *g, uint32_t column, uint32_t row,
+                                uint32_t slice, gfx_cluster_cell_bounds *out);
+// Whether a light's cone, if it has one, may touch a cell.
+static inline bool gfx_cluster_cone_reaches(const gfx_cluster_lights *l, uint32_t light,
+                                            const gfx_cluster_cell_bounds *b) {
+    return l->spots == 0 || l->cone[light].cosine == 0.0f ||
+           !gfx_cluster_cone_misses(&l->cone[light], b);
+}
 // The shader finds a fragment's cell from rounded coordinates; bounds are widened by these parts of
 // a column or row, and of a slice.
 #define GFX_CLUSTER_TILE_MARGIN  1e-3f

@@ -194,16 +194,80 @@ static inline uint32_t column_mask(const gfx_cluster_planes *p, uint32_t first, 
     return mask;
 }
 
+typedef struct corners { // of a vector of cells of one row and slice
+    vf x[2];
+    float y[2], depth[2];
+    bool orthographic;
+} corners;
+
+// gfx_cluster_ahead for a vector of cells.
+static inline vf ahead(const corners *b, const vf n[3], const float from[3]) {
+    vf side = vf_add(vf_min(vf_mul(n[0], b->x[0]), vf_mul(n[0], b->x[1])),
+                     vf_min(vf_mul(n[1], vf_set1(b->y[0])), vf_mul(n[1], vf_set1(b->y[1]))));
+    vf rise = b->orthographic ? n[2] : vf_add(side, n[2]);
+    vf least = vf_min(vf_mul(rise, vf_set1(b->depth[0])), vf_mul(rise, vf_set1(b->depth[1])));
+    least = b->orthographic ? vf_add(least, side) : least;
+    vf start = vf_add(vf_add(vf_mul(n[0], vf_set1(from[0])), vf_mul(n[1], vf_set1(from[1]))),
+                      vf_mul(n[2], vf_set1(from[2])));
+    return vf_sub(least, start);
+}
+
+// gfx_cluster_cone_misses for a vector of cells; way: from the apex to their centres.
+static inline vm cone_misses(const gfx_cluster_cone *c, const corners *b, const vf way[3]) {
+    vf axis[3] = {vf_set1(c->axis[0]), vf_set1(c->axis[1]), vf_set1(c->axis[2])}, normal[3];
+    vf along =
+        vf_add(vf_add(vf_mul(way[0], axis[0]), vf_mul(way[1], axis[1])), vf_mul(way[2], axis[2]));
+    vf off2 = vf_zero(), cosine = vf_set1(c->cosine), sine = vf_set1(c->sine);
+    for (int k = 0; k < 3; ++k) {
+        normal[k] = vf_sub(way[k], vf_mul(along, axis[k]));
+        off2 = vf_add(off2, vf_mul(normal[k], normal[k]));
+    }
+    vf off = vf_sqrt(off2), length = vf_sqrt(vf_add(off2, vf_mul(along, along)));
+    vf back = vf_mul(sine, off);
+    for (int k = 0; k < 3; ++k) {
+        normal[k] = vf_sub(vf_mul(cosine, normal[k]), vf_mul(back, axis[k]));
+    }
+    vf rim = vf_max(vf_add(vf_mul(along, cosine), back), vf_zero());
+    vf reach = vf_select(vf_ge(along, vf_mul(length, cosine)), length, rim);
+    return vm_or(vf_gt(ahead(b, normal, c->apex), vf_zero()),
+                 vf_gt(ahead(b, way, c->apex), vf_mul(vf_set1(c->range), reach)));
+}
+
+// Columns of `mask` that a cone may touch in row j of slice k.
+static inline uint32_t cone_mask(const gfx_cluster_wide *w, const gfx_cluster_cone *c, uint32_t k,
+                                 uint32_t j, uint32_t first, uint32_t mask) {
+    corners b = {.y = {w->rows.lo[j], w->rows.hi[j]},
+                 .depth = {w->slice_lo[k], w->slice_hi[k]},
+                 .orthographic = w->grid->orthographic};
+    float middle = 0.5f * (b.depth[0] + b.depth[1]), scale = b.orthographic ? 1.0f : middle;
+    vf way[3] = {vf_zero(), vf_set1(w->rows.mid[j] * scale - c->apex[1]),
+                 vf_set1(middle - c->apex[2])};
+    uint32_t missed = 0;
+    for (uint32_t i = 0; i < 16; i += CORE_SIMD_WIDTH) {
+        if (mask >> i & ((1u << CORE_SIMD_WIDTH) - 1u)) {
+            b.x[0] = vf_loadu(w->columns.lo + first + i);
+            b.x[1] = vf_loadu(w->columns.hi + first + i);
+            vf centre = vf_mul(vf_loadu(w->columns.mid + first + i), vf_set1(scale));
+            way[0] = vf_sub(centre, vf_set1(c->apex[0]));
+            missed |= vm_bits(cone_misses(c, &b, way)) << i;
+        }
+    }
+    return mask & ~missed;
+}
+
 typedef struct reach { // tiles of one light in one slice, inclusive
     uint32_t c0, c1, r0, r1;
 } reach;
 
-static inline uint32_t record_light(const gfx_cluster_wide *w, uint32_t i, float lo, float hi,
+static inline uint32_t record_light(const gfx_cluster_wide *w, uint32_t i, uint32_t k,
                                     const reach *t, gfx_cluster_records *out) {
     const gfx_cluster_packed *p = &w->packed;
+    const gfx_cluster_cone *cone = w->cone ? &w->cone[p->id[i]] : NULL;
+    bool spot = cone && cone->cosine > 0.0f;
     uint32_t groups = (w->grid->columns + 15) / 16, pairs = 0;
     float x = p->x[i], d = p->depth[i], r = p->radius[i];
-    float inside = CORE_CLAMP(d, lo, hi), off = inside - d; // onto the slice's nearer plane
+    float inside = CORE_CLAMP(d, w->slice_lo[k], w->slice_hi[k]),
+          off = inside - d; // onto the slice's nearer plane
     rows row;
     refine_rows(w, p->y[i], inside, r * r - off * off, t->r0, t->r1, &row);
     for (uint32_t j = t->r0; j <= t->r1; ++j) {
@@ -215,6 +279,7 @@ static inline uint32_t record_light(const gfx_cluster_wide *w, uint32_t i, float
             uint32_t to = t->c1 < 16 * g + 15 ? t->c1 - 16 * g : 15;
             uint32_t mask = column_mask(&w->column, 16 * g, x, row.depth[j], row.radius[j]);
             mask &= (2u << to) - (1u << from);
+            mask = spot ? cone_mask(w, cone, k, j, 16 * g, mask) : mask;
             uint32_t list = j * groups + g, n = out->count[list];
             out->id[list * out->stride + n] = p->id[i];
             out->mask[list * out->stride + n] = (uint16_t)mask;
@@ -258,7 +323,7 @@ uint32_t NAME(gfx_cluster_record)(const gfx_cluster_wide *w, uint32_t k, gfx_clu
             int lane = __builtin_ctz(bits);
             reach t = {(uint32_t)c0[lane], (uint32_t)c1[lane], (uint32_t)r0[lane],
                        (uint32_t)r1[lane]};
-            pairs += record_light(w, i + (uint32_t)lane, lo, hi, &t, out);
+            pairs += record_light(w, i + (uint32_t)lane, k, &t, out);
         }
     }
     return pairs;

@@ -14,17 +14,26 @@ static void reserve(GLuint *buffer, size_t *bytes, size_t need) {
 }
 
 static void upload_grid(gfx_device *d, const gfx_cluster_grid *g, const gfx_cluster_lights *l) {
-    size_t bytes = sizeof(struct gfx_cluster_block) + l->count * sizeof(gfx_glsl_vec4);
+    size_t bytes =
+        sizeof(struct gfx_cluster_block) + l->count * sizeof(struct gfx_cluster_light_block);
     struct gfx_cluster_block *block = gfx_stream_begin(&d->cluster_grid, bytes, d->frame);
-    gfx_glsl_vec4 *sphere = (gfx_glsl_vec4 *)(block + 1);
+    struct gfx_cluster_light_block *light = (struct gfx_cluster_light_block *)(block + 1);
     *block = (struct gfx_cluster_block){
         .size = {g->columns, g->rows, g->slices, l->count},
         .lens = {g->tan_x, g->tan_y, g->orthographic ? 0.0f : 1.0f, 0.0f},
+        .margin = {GFX_CLUSTER_TILE_MARGIN * 2.0f * g->tan_x / (float)g->columns,
+                   GFX_CLUSTER_TILE_MARGIN * 2.0f * g->tan_y / (float)g->rows,
+                   GFX_CLUSTER_SLICE_MARGIN, 0.5f * g->near_plane},
     };
     memcpy(block->depth, g->depth, (g->slices + 1) * sizeof(float));
     for (uint32_t i = 0; i < l->count; ++i) {
-        const gfx_glsl_vec4 s = {l->x[i], l->y[i], l->depth[i], l->radius[i]};
-        memcpy(sphere[i], s, sizeof s);
+        const gfx_cluster_cone *c = &l->cone[i];
+        light[i] = (struct gfx_cluster_light_block){
+            .sphere = {l->x[i], l->y[i], l->depth[i], l->radius[i]},
+            .apex = {c->apex[0], c->apex[1], c->apex[2], c->sine},
+            .axis = {c->axis[0], c->axis[1], c->axis[2], c->cosine},
+            .range = {c->range},
+        };
     }
     gfx_stream_bind(&d->cluster_grid, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_CLUSTER_GRID, bytes,
                     d->frame);

@@ -26,6 +26,18 @@ static void set_planes(gfx_cluster_planes *p, const float *bound, uint32_t count
     }
 }
 
+static void set_strips(const gfx_cluster_grid *g, gfx_cluster_strips *columns,
+                       gfx_cluster_strips *rows) {
+    for (uint32_t i = 0; i < GFX_CLUSTER_SIDE + CORE_LANES; ++i) {
+        gfx_cluster_cell_bounds b;
+        gfx_cluster_cell_bounds_of(g, CORE_MIN(i, g->columns - 1), CORE_MIN(i, g->rows - 1), 0, &b);
+        columns->lo[i] = b.x[0], columns->hi[i] = b.x[1];
+        columns->mid[i] = 0.5f * (b.x[0] + b.x[1]);
+        rows->lo[i] = b.y[0], rows->hi[i] = b.y[1];
+        rows->mid[i] = 0.5f * (b.y[0] + b.y[1]);
+    }
+}
+
 static void set_grid(gfx_cluster_wide *w, const gfx_cluster_grid *g) {
     w->grid = g;
     set_planes(&w->column, g->x, g->columns, g->orthographic);
@@ -33,6 +45,7 @@ static void set_grid(gfx_cluster_wide *w, const gfx_cluster_grid *g) {
     for (uint32_t k = 0; k < g->slices; ++k) {
         gfx_cluster_slice_bounds(g, k, &w->slice_lo[k], &w->slice_hi[k]);
     }
+    set_strips(g, &w->columns, &w->rows);
     w->margin = GFX_CLUSTER_TILE_MARGIN;
     w->mid_x = 0.5f * (float)g->columns, w->mid_y = 0.5f * (float)g->rows;
     w->scale_x = w->mid_x / g->tan_x, w->scale_y = w->mid_y / g->tan_y;
@@ -112,6 +125,7 @@ void gfx_clusters_assign_wide(gfx_clusters *c, const gfx_cluster_grid *g,
     }
     wide_state *s = c->wide;
     set_grid(&s->kernel, g);
+    s->kernel.cone = lights->spots ? lights->cone : NULL;
     set_packed(s, lights->count);
     s->kernel.packed.count = CORE_SIMD_SELECT(gfx_cluster_pack)(&s->kernel, lights);
     core_jobs_for(jobs, g->slices, 1, slice_job, s);

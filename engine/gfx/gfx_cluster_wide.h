@@ -12,6 +12,12 @@ typedef struct gfx_cluster_planes {
         nc[GFX_CLUSTER_SIDE + CORE_LANES];
 } gfx_cluster_planes;
 
+// Bounds and middles of columns or rows, as gfx_cluster_cell_bounds_of gives them.
+typedef struct gfx_cluster_strips {
+    float lo[GFX_CLUSTER_SIDE + CORE_LANES], hi[GFX_CLUSTER_SIDE + CORE_LANES],
+        mid[GFX_CLUSTER_SIDE + CORE_LANES];
+} gfx_cluster_strips;
+
 // Lights that may be in view, packed, with what does not depend on the slice.
 typedef struct gfx_cluster_packed {
     uint32_t count; // columns are valid to the next multiple of CORE_LANES, with lo > hi there
@@ -31,6 +37,8 @@ typedef struct gfx_cluster_wide {
     float slice_lo[GFX_CLUSTER_SIDE], slice_hi[GFX_CLUSTER_SIDE]; // widened bounds
     float scale_x, scale_y, mid_x, mid_y;                         // slope to column, row
     float margin;                                                 // of a column or row
+    gfx_cluster_strips columns, rows;
+    const gfx_cluster_cone *cone; // by light; NULL when none has one
     gfx_cluster_packed packed;
 } gfx_cluster_wide;
 

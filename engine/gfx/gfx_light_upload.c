@@ -80,6 +80,30 @@ static core_vec3 light_sphere(const gfx_lights *l, uint32_t i, float *radius) {
     return core_v3_mad(p, core_v3(l->dx[i], l->dy[i], l->dz[i]), along);
 }
 
+// The rim is widened by the rounding of the shader's cosine, and the apex drawn back by that of
+// positions and of the test.
+static gfx_cluster_cone light_cone(const gfx_lights *l, uint32_t i, const gfx_view *view,
+                                   float slack) {
+    const float *m = view->view.m;
+    float cosine = core_cosf(l->outer[i]) - 1e-6f;
+    if (l->type[i] != GFX_SPOT || cosine <= 0.0f) {
+        return (gfx_cluster_cone){0};
+    }
+    float sine = core_sqrtf(1.0f - cosine * cosine), back = slack / sine;
+    float x = l->px[i] - back * l->dx[i], y = l->py[i] - back * l->dy[i],
+          z = l->pz[i] - back * l->dz[i];
+    return (gfx_cluster_cone){
+        .apex = {m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13],
+                 -(m[2] * x + m[6] * y + m[10] * z + m[14])},
+        .axis = {m[0] * l->dx[i] + m[4] * l->dy[i] + m[8] * l->dz[i],
+                 m[1] * l->dx[i] + m[5] * l->dy[i] + m[9] * l->dz[i],
+                 -(m[2] * l->dx[i] + m[6] * l->dy[i] + m[10] * l->dz[i])},
+        .sine = sine,
+        .range = l->radius[i] + back + slack,
+        .cosine = cosine,
+    };
+}
+
 void gfx_cluster_lights_fill(gfx_cluster_lights *out, const gfx_lights *l, const gfx_view *view) {
     const float *m = view->view.m;
     uint32_t n = core_columns_count(&l->set), at = 0;
@@ -98,7 +122,10 @@ void gfx_cluster_lights_fill(gfx_cluster_lights *out, const gfx_lights *l, const
         // The shader works with positions rounded in world space, this with view space.
         float rounding = core_absf(x) + core_absf(y) + core_absf(depth) + far_from_zero;
         out->x[at] = x, out->y[at] = y, out->depth[at] = depth;
-        out->radius[at++] = r * 1.00001f + rounding * 2e-6f;
+        out->radius[at] = r * 1.00001f + rounding * 2e-6f;
+        out->cone[at] =
+            light_cone(l, i, view, r * 1e-5f + (rounding + r + view->virtual_far) * 4e-6f);
+        out->spots += out->cone[at++].cosine > 0.0f;
     }
     out->count = at;
 }
