@@ -166,6 +166,14 @@ struct gfx_line_block {
     GFX_VEC4(color); // linear, straight alpha
 };
 
+struct gfx_board_block {
+    GFX_VEC4(place); // middle, world, m; 1: added to what is behind
+    GFX_VEC4(right); // half edges, m
+    GFX_VEC4(up);
+    GFX_VEC4(uv);    // u0, v0, u1, v1
+    GFX_VEC4(color); // linear, straight alpha
+};
+
 struct gfx_quad_block {
     GFX_VEC4(place); // xy: first corner in pixels, origin top left; radius of the corners; border
     GFX_VEC4(axes);  // its two edges, pixels

@@ -179,6 +179,85 @@ void gfx_camera_ray(const gfx_camera *camera, float width, float height, float x
 // Where a point is in the picture: pixels, and its distance along the view (m, negative behind).
 core_vec3 gfx_camera_project(const gfx_camera *camera, float width, float height, core_vec3 point);
 
+// ---- particles ----
+// Small squares that face the viewer. Born at the emitter's rate in every step, at times between
+// steps too; from then on a particle's place is a closed function of its age (constant
+// acceleration, linear drag towards the wind): pictures depend neither on how many frames were
+// drawn nor on the instruction set, and the simulation does not know of them.
+typedef core_handle gfx_emitter;
+typedef enum gfx_emit_shape { GFX_EMIT_POINT, GFX_EMIT_SPHERE, GFX_EMIT_BOX } gfx_emit_shape;
+#define GFX_EMITTER_KEYS 8
+typedef struct gfx_emitter_desc {
+    core_vec3 position;
+    core_quat rotation; // takes +Y to where particles fly; zero: identity
+    gfx_emit_shape shape;
+    core_vec3 extent;       // half, of a sphere (may be flat) or box, m
+    float rate;             // births a second, default 20
+    uint32_t burst;         // births at once
+    uint32_t capacity;      // alive at once, <= 2^20; default: what rate, life and burst need. The
+                            // oldest make room
+    float life[2];          // s, least and most, > 0, default 1
+    float speed[2];         // m/s, least and most
+    float spread;           // half angle round the direction, radians; pi: everywhere
+    core_vec3 acceleration; // m/s^2
+    core_vec3 wind;         // m/s: speed that drag leads to
+    float drag;             // 1/s
+    float spin[2];          // radians a second, least and most; then the first angle is random
+    // Over life, evenly spaced, linear in between.
+    float size[GFX_EMITTER_KEYS];     // edge, m
+    uint32_t size_keys;               // default one: 0.1 m
+    float size_vary;                  // part by which sizes of particles differ, 0..1
+    float color[GFX_EMITTER_KEYS][4]; // linear, may exceed 1; straight alpha
+    uint32_t color_keys;              // default one: white
+    const char *image;                // NULL: a soft disc
+    uint32_t frames[2];               // columns and rows of the image that are shown over life
+    bool additive;                    // light that is added, as of fire; else it covers, as smoke
+    uint64_t seed;
+    uint32_t cookie;
+} gfx_emitter_desc;
+gfx_emitter_desc gfx_emitter_desc_default(void);
+gfx_emitter gfx_emitter_create(gfx_world *world, const gfx_emitter_desc *desc);
+bool gfx_emitter_destroy(gfx_world *world, gfx_emitter emitter); // and its particles
+bool gfx_emitter_alive(const gfx_world *world, gfx_emitter emitter);
+// Where it is at the end of the next step: births in between are spread over the way there.
+bool gfx_emitter_set_pose(gfx_world *world, gfx_emitter emitter, core_vec3 position,
+                          core_quat rotation);
+bool gfx_emitter_set_rate(gfx_world *world, gfx_emitter emitter, float rate);
+bool gfx_emitter_burst(gfx_world *world, gfx_emitter emitter, uint32_t count);
+bool gfx_emitter_set_user(gfx_world *world, gfx_emitter emitter, uint64_t user);
+uint64_t gfx_emitter_user(const gfx_world *world, gfx_emitter emitter);
+uint32_t gfx_emitters_count(const gfx_world *world);
+gfx_emitter gfx_emitter_at(const gfx_world *world, uint32_t row); // row < gfx_emitters_count
+// How many are alive at the moment that is drawn; places of the first, out may be NULL.
+uint32_t gfx_emitter_particles(gfx_world *world, gfx_emitter emitter, core_vec3 *out,
+                               uint32_t capacity);
+// One step of dt seconds: births. Called once a step; dt must not change.
+void gfx_world_step(gfx_world *world, float dt);
+// The moment that frames show: 0 the end of the step before, 1 (so after a step) that of the last.
+void gfx_world_set_moment(gfx_world *world, float alpha);
+
+// ---- sprites and text in the world, for the next frame ----
+typedef enum gfx_facing {
+    GFX_FACE_VIEWER,  // turns wholly
+    GFX_FACE_UPRIGHT, // turns about +Y
+    GFX_FACE_FIXED    // stands as rotation says: its front is +Z, its top +Y
+} gfx_facing;
+typedef struct gfx_board_desc { // a picture or a text
+    core_vec3 position;         // of its middle
+    core_quat rotation;         // fixed only
+    gfx_facing facing;
+    float width, height; // m; width 0: as the picture has it. Text: height of a line, m
+    const char *image;   // or
+    const char *text;    // UTF-8, lines at '\n', middled
+    const char *font;    // as gfx_text_desc
+    float source[4];     // as gfx_sprite_desc
+    float color[4];      // linear; zero: white
+    bool additive;
+    uint32_t cookie;
+} gfx_board_desc;
+gfx_board_desc gfx_board_desc_default(void);
+bool gfx_draw_board(gfx_world *world, const gfx_board_desc *desc);
+
 // ---- lines in the world, for the next frame ----
 // Forgotten by gfx_world_begin_frame, as 2D is.
 typedef struct gfx_pen {

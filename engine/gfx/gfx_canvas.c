@@ -4,12 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-// Place of a copy in the frame's text.
-static uint32_t keep_text(gfx_world *world, const char *text, size_t length) {
+uint32_t gfx_keep_text(gfx_world *world, const char *text) {
+    size_t length = strlen(text);
     uint32_t at = (uint32_t)world->text.count;
-    char *to = gfx_grow(&world->text, 1, length + 1);
-    memcpy(to, text, length);
-    to[length] = '\0';
+    memcpy(gfx_grow(&world->text, 1, length + 1), text, length + 1);
     return at;
 }
 
@@ -18,9 +16,8 @@ static gfx_command *add_command(gfx_world *world, gfx_command_type type, const c
     *c = (gfx_command){.type = type, .color = {1.0f, 1.0f, 1.0f, 1.0f}, .font = GFX_NO_TEXT};
     memcpy(c->clip, world->clip[world->clips], sizeof c->clip);
     if (text) {
-        size_t length = strlen(text);
-        c->text_length = (uint32_t)length;
-        c->text = keep_text(world, text, length);
+        c->text_length = (uint32_t)strlen(text);
+        c->text = gfx_keep_text(world, text);
     }
     return c;
 }
@@ -52,7 +49,7 @@ bool gfx_text(gfx_world *world, const gfx_text_desc *desc) {
     c->align = desc->align;
     c->color = rgba(desc->color);
     if (desc->font) {
-        c->font = keep_text(world, desc->font, strlen(desc->font));
+        c->font = gfx_keep_text(world, desc->font);
     }
     return true;
 }
@@ -133,7 +130,8 @@ bool gfx_clip_pop(gfx_world *world) {
 
 void gfx_world_begin_frame(gfx_world *world) {
     const float all[4] = {-1e9f, -1e9f, 1e9f, 1e9f};
-    world->commands.count = world->text.count = world->lines.count = 0;
+    world->commands.count = world->text.count = 0;
+    world->lines.count = world->boards.count = 0;
     memcpy(world->clip[0], all, sizeof all);
     world->clips = 0;
 }

@@ -178,15 +178,6 @@ void gfx_cluster_gpu_release(gfx_cluster_gpu *c);
 bool gfx_lights_upload(gfx_device *device, gfx_world *world, const gfx_view *view,
                        gfx_light_upload *out);
 
-// ---- lines in the world (gfx_marks.c) ----
-
-typedef struct gfx_marks {
-    gfx_stream lines;
-} gfx_marks;
-bool gfx_marks_wanted(const gfx_world *world);
-bool gfx_marks_draw(gfx_device *device, gfx_world *world);
-void gfx_marks_release(gfx_marks *marks);
-
 // ---- screen-space quads (gfx_quads.c, gfx_font.c) ----
 
 typedef struct gfx_font gfx_font; // an atlas of glyphs, of any face and size
@@ -246,6 +237,26 @@ bool gfx_post_fill(gfx_device *device, const char *fragment, uint32_t features);
 // Binds a target for a pass that replaces all of it.
 void gfx_post_begin(gfx_device *device, const gfx_target *target);
 
+// ---- lines in the world (gfx_marks.c); pictures, texts, particles (gfx_boards.c) ----
+
+typedef struct gfx_marks {
+    gfx_stream lines;
+} gfx_marks;
+bool gfx_marks_wanted(const gfx_world *world);
+bool gfx_marks_draw(gfx_device *device, gfx_world *world);
+void gfx_marks_release(gfx_marks *marks);
+
+typedef struct gfx_boards {
+    gfx_stream stream;
+    GLuint sampler;
+    gfx_growing blocks, runs;          // gfx_board_block, gfx_quad_run
+    gfx_growing order, inner, scratch; // gfx_sort_key
+    gfx_growing glyphs;                // gfx_quad_block of the text at hand
+} gfx_boards;
+bool gfx_boards_wanted(const gfx_world *world);
+bool gfx_boards_draw(gfx_device *device, gfx_world *world, const gfx_view *view);
+void gfx_boards_release(gfx_boards *boards);
+
 // ---- the device (gfx_device.c, gfx_frame.c) ----
 
 struct gfx_device {
@@ -278,6 +289,7 @@ struct gfx_device {
     uint32_t frame; // turn of the streams
     gfx_quads quads;
     gfx_marks marks;
+    gfx_boards boards;
     gfx_growing places; // of each row's mesh at its level of detail, NULL: not drawn
     uint64_t levels_hash;
     gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists

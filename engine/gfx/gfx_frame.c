@@ -226,6 +226,14 @@ static bool pass_blended(frame *f) {
                                     f->features & ~(uint32_t)GFX_FEATURE_AO);
 }
 
+static bool wants_boards(const frame *f) { return gfx_boards_wanted(f->world); }
+static bool pass_boards(frame *f) {
+    f->device->passes++;
+    begin_blending();
+    glDepthFunc(GL_GREATER);
+    return gfx_boards_draw(f->device, f->world, &f->view);
+}
+
 static bool wants_marks(const frame *f) { return gfx_marks_wanted(f->world); }
 static bool pass_marks(frame *f) {
     f->device->passes++;
@@ -251,10 +259,10 @@ static const struct {
     bool (*wanted)(const frame *f);
     bool (*draw)(frame *f);
 } passes[] = {
-    {always, pass_clear},          {wants_depth, pass_depth}, {wants_ambient, pass_ambient},
-    {always, pass_scene},          {wants_sky, pass_sky},     {wants_fog, pass_fog},
-    {wants_blended, pass_blended}, {wants_marks, pass_marks}, {wants_resolve, pass_resolve},
-    {always, pass_finish},
+    {always, pass_clear},          {wants_depth, pass_depth},   {wants_ambient, pass_ambient},
+    {always, pass_scene},          {wants_sky, pass_sky},       {wants_fog, pass_fog},
+    {wants_blended, pass_blended}, {wants_boards, pass_boards}, {wants_marks, pass_marks},
+    {wants_resolve, pass_resolve}, {always, pass_finish},
 };
 
 static bool draw_passes(frame *f) {

@@ -98,6 +98,13 @@ typedef struct gfx_command { // one 2D call; text lies in the world's frame text
 } gfx_command;
 #define GFX_NO_TEXT UINT32_MAX
 
+typedef struct gfx_board {      // a picture or text in the world; texts lie in the frame text
+    gfx_board_desc desc;        // image, text, font: not set
+    uint32_t image, text, font; // GFX_NO_TEXT: none
+} gfx_board;
+// Place of a copy in the frame's text (gfx_canvas.c).
+uint32_t gfx_keep_text(gfx_world *world, const char *text);
+
 typedef struct gfx_growing { // array that keeps its memory between frames
     void *data;
     size_t count; // elements in use
@@ -150,8 +157,10 @@ struct gfx_world {
     gfx_environment environment; // panorama: points to panorama_path
     char panorama_path[CORE_NAME_MAX];
     gfx_growing commands, text;
-    gfx_growing lines; // struct gfx_line_block
-    gfx_growing faces; // gfx_face
+    gfx_growing lines;               // struct gfx_line_block
+    gfx_growing boards;              // gfx_board
+    struct gfx_particles *particles; // NULL until the first emitter
+    gfx_growing faces;               // gfx_face
     float clip[GFX_CLIPS + 1][4];
     uint32_t clips;
     core_vfs *vfs;

@@ -120,3 +120,34 @@ void gfx_draw_grid(gfx_world *world, core_vec3 center, float size, uint32_t cell
                       core_v3(center.x + end, center.y, center.z + at), pen);
     }
 }
+
+// ---- pictures and texts ----
+
+gfx_board_desc gfx_board_desc_default(void) {
+    return (gfx_board_desc){.height = 1.0f, .cookie = GFX_COOKIE};
+}
+
+bool gfx_draw_board(gfx_world *world, const gfx_board_desc *desc) {
+    if (!desc || desc->cookie != GFX_COOKIE) {
+        return core_fail("gfx_draw_board: start from gfx_board_desc_default()");
+    }
+    if (!desc->image == !desc->text) {
+        return core_fail("gfx_draw_board: give an image or a text, one of them");
+    }
+    if (!finite3(desc->position) || !(desc->height > 0.0f) || !isfinite(desc->height) ||
+        !(desc->width >= 0.0f) || !isfinite(desc->width)) {
+        return core_fail("gfx_draw_board: position must be finite numbers, height > 0, width >= 0");
+    }
+    gfx_board *b = gfx_grow(&world->boards, sizeof *b, 1);
+    *b = (gfx_board){.desc = *desc, GFX_NO_TEXT, GFX_NO_TEXT, GFX_NO_TEXT};
+    b->image = desc->image ? gfx_keep_text(world, desc->image) : GFX_NO_TEXT;
+    b->text = desc->text ? gfx_keep_text(world, desc->text) : GFX_NO_TEXT;
+    b->font = desc->font ? gfx_keep_text(world, desc->font) : GFX_NO_TEXT;
+    b->desc.image = b->desc.text = b->desc.font = NULL;
+    b->desc.rotation = core_quat_normalize(desc->rotation);
+    const float *c = desc->color;
+    if (c[0] == 0.0f && c[1] == 0.0f && c[2] == 0.0f && c[3] == 0.0f) {
+        b->desc.color[0] = b->desc.color[1] = b->desc.color[2] = b->desc.color[3] = 1.0f;
+    }
+    return true;
+}

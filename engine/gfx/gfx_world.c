@@ -3,6 +3,7 @@
 #include "gfx/gfx_internal.h"
 
 #include "gfx/gfx_cluster.h"
+#include "gfx/gfx_particles.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -66,6 +67,8 @@ void gfx_world_destroy(gfx_world *world) {
     core_columns_release(&world->materials.set);
     gfx_growing_release(&world->commands);
     gfx_growing_release(&world->lines);
+    gfx_growing_release(&world->boards);
+    gfx_particles_destroy(world->particles);
     gfx_growing_release(&world->text);
     gfx_faces_release(&world->faces);
     core_free(world);
@@ -75,7 +78,7 @@ size_t gfx_world_bytes(const gfx_world *world) {
     return sizeof *world + core_columns_bytes(&world->lights.set) +
            core_columns_bytes(&world->instances.set) + core_columns_bytes(&world->meshes.set) +
            core_columns_bytes(&world->materials.set) + world->commands.bytes + world->text.bytes +
-           world->lines.bytes + world->heap_bytes;
+           world->lines.bytes + world->boards.bytes + world->heap_bytes;
 }
 
 void gfx_world_counts(const gfx_world *world, core_metrics *metrics) {

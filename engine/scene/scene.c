@@ -191,6 +191,7 @@ bool scene_step(scene *s) {
     }
     scene_anim_pose(s);
     scene_audio_step(s);
+    scene_emitters_step(s);
     s->clock.step[0]++;
     return ok;
 }

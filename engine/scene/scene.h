@@ -157,6 +157,9 @@ bool scene_set_position(scene *s, scene_entity e,
 bool scene_set_rotation(scene *s, scene_entity e, core_quat q);
 bool scene_set_scale(scene *s, scene_entity e, core_vec3 v);
 
+// The emitter follows the entity from now on, and gives no more particles once the entity is gone.
+bool scene_set_emitter(scene *s, scene_entity e, gfx_emitter emitter);
+
 // ---- tags and queries ----
 #define SCENE_MAX_TAGS 64
 // Number of a tag by name, 0..63; a new name takes the next. -1 + core_fail when all are taken or

@@ -141,6 +141,9 @@ void scene_nav_step(scene *s); // agents, and the entities they lead; before phy
 void scene_nav_leave(scene *s, uint32_t row);
 // scene_audio.c
 void scene_audio_step(scene *s);
+
+// ---- scene_emitters.c ----
+void scene_emitters_step(scene *s);
 void scene_audio_leave(scene *s, uint32_t row);
 void scene_audio_destroy(scene *s);
 // scene_model.c

@@ -97,6 +97,7 @@ void scene_sync_draw(scene *s, float alpha) {
             gfx_instance_set_transform(s->gfx, e->instance[row], p, q, size);
         }
     }
+    gfx_world_set_moment(s->gfx, alpha);
     scene_anim_sync(s);
     core_stage_end(s->metrics, CORE_STAGE_SCENE);
 }

@@ -340,6 +340,36 @@ local Material = {}
 ---Removes the material: what has it is drawn in the plain one.
 function Material:destroy() end
 
+---A source of particles.
+---@class corsac.Emitter
+local Emitter = {}
+
+---Moves the emitter; births until the next step are spread over the way.
+---@param x number
+---@param y number
+---@param z number
+---@param rotation? number[]|corsac.AxisAngle takes +Y to where particles fly
+function Emitter:setPosition(x, y, z, rotation) end
+
+---Changes how many are born.
+---@param rate number
+function Emitter:setRate(rate) end
+
+---Gives birth to many at once.
+---@param count integer
+function Emitter:burst(count) end
+
+---Goes with an entity from the next step on; without it nothing more is born.
+---@param entity corsac.Entity
+function Emitter:follow(entity) end
+
+---How many of its particles are alive.
+---@return integer count
+function Emitter:getCount() end
+
+---Removes the emitter and its particles.
+function Emitter:destroy() end
+
 ---Meshes, skeleton and clips read from a file.
 ---@class corsac.Model
 local Model = {}
@@ -1868,6 +1898,70 @@ function corsac.gfx.drawCapsule(a, b, radius, pen) end
 ---@param cells integer along an edge
 ---@param pen? corsac.gfx.drawGrid.pen how
 function corsac.gfx.drawGrid(center, size, cells, pen) end
+
+---Particles, and pictures and texts in the world.
+corsac.gfx = {}
+
+---@class corsac.gfx.newEmitter.options
+---@field position? number[] m
+---@field rotation? number[]|corsac.AxisAngle takes +Y to where particles fly
+---@field shape? "point"|"sphere"|"box" where they are born
+---@field extent? number[] half, of a sphere or box, m
+---@field rate? number births, 1/s
+---@field burst? integer births at once
+---@field capacity? integer alive at once; the oldest make room
+---@field life? number[] {least, most}, s
+---@field speed? number[] {least, most}, m/s
+---@field spread? number half angle round the direction; pi: everywhere, rad
+---@field acceleration? number[] m/s^2
+---@field wind? number[] speed that drag leads to, m/s
+---@field drag? number 1/s
+---@field spin? number[] {least, most}; then the first angle is random, rad/s
+---@field size? number[] edge, over life: up to 8 evenly spaced, m
+---@field sizeVary? number part by which sizes of particles differ
+---@field colors? number[] linear r, g, b, a over life: up to 8 times four numbers
+---@field image? string image file; none: a soft disc
+---@field columns? integer of frames in the image, shown over life
+---@field rows? integer of frames in the image
+---@field additive? boolean light that is added, as of fire; else it covers, as smoke
+---@field seed? integer of its random numbers
+
+---Makes a source of particles. They change no simulation, and a particle's way depends on its birth and its age alone.
+---@param options corsac.gfx.newEmitter.options the emitter
+---@return corsac.Emitter emitter
+function corsac.gfx.newEmitter(options) end
+
+---@class corsac.gfx.drawSprite.options
+---@field position number[] of its middle, m
+---@field height? number of a text: of a line, m
+---@field width? number of a picture, m
+---@field facing? "viewer"|"upright"|"fixed" turns to the viewer, turns about +Y only, or stands as rotation says
+---@field rotation? number[]|corsac.AxisAngle fixed: from a front along +Z
+---@field color? number[] linear
+---@field font? string as for text
+---@field source? number[] {x, y, width, height} of the part of the image, texels
+---@field additive? boolean light that is added
+
+---Draws an image file in the world, in this frame.
+---@param path string in the game's folder
+---@param options corsac.gfx.drawSprite.options where and how
+function corsac.gfx.drawSprite(path, options) end
+
+---@class corsac.gfx.drawText.options
+---@field position number[] of its middle, m
+---@field height? number of a text: of a line, m
+---@field width? number of a picture, m
+---@field facing? "viewer"|"upright"|"fixed" turns to the viewer, turns about +Y only, or stands as rotation says
+---@field rotation? number[]|corsac.AxisAngle fixed: from a front along +Z
+---@field color? number[] linear
+---@field font? string as for text
+---@field source? number[] {x, y, width, height} of the part of the image, texels
+---@field additive? boolean light that is added
+
+---Writes a text in the world, in this frame.
+---@param text string UTF-8; \n starts a line
+---@param options corsac.gfx.drawText.options where and how
+function corsac.gfx.drawText(text, options) end
 
 ---Skeletons, clips and state machines.
 corsac.anim = {}

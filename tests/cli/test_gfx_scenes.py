@@ -58,6 +58,24 @@ class GfxScenes(SceneCase):
     def test_menu(self):
         self.golden("menu", "--size", "480x480", "--steps", 12, "--set", "bot=true")
 
+    def test_text(self):
+        self.golden("text", "--size", "960x540")
+
+    def test_particles(self):
+        self.golden("particles", "--steps", 85)
+
+    def test_particles_leave_the_simulation_alone(self):
+        scene = SCENES / "particles.lua"
+        hashes = {corsac("run", scene, "--headless", "--quiet", "--steps", 60, "--hash", "--set", f"n={n}").out for n in (0, 1, 3)}
+        self.assertEqual(len(hashes), 1)
+
+    def test_particles_do_not_depend_on_the_frames_drawn(self):
+        """Nor on the instruction set or on threads."""
+        alone = self.shot("particles", "alone", "--steps", 40).read_bytes()
+        for name, more in (("often", ("--shot", f"{self.dir}/x.png@7", "--shot", f"{self.dir}/y.png@8")),
+                           ("sse2", ("--simd", "sse2", "--threads", 1))):
+            self.assertEqual(self.shot("particles", name, "--steps", 40, *more).read_bytes(), alone, name)
+
     def test_forward_and_clustered_give_one_picture(self):
         args = ("--steps", 2, "--set", "n=200", "--set")
         forward = self.shot("lights", "forward", *args, "method=forward")
