@@ -229,6 +229,12 @@ uint32_t nav_mesh_waiting(const nav_world *world, nav_mesh mesh); // tiles to be
 // Of the spans, their heights, areas and links: equal for equal surfaces.
 uint64_t nav_mesh_hash(const nav_world *world, nav_mesh mesh);
 
+// The surface with its pieces and links as bytes (".cnav"), after all that waits has been made. As
+// snprintf: returns how many bytes it takes, writes them when they fit; 0 + core_fail.
+size_t nav_mesh_save(nav_world *world, nav_mesh mesh, void *out, size_t size);
+// Checks everything: truncated, oversized or corrupt data gives a null handle and core_fail.
+nav_mesh nav_mesh_load(nav_world *world, const void *data, size_t size);
+
 // From free cells of a flat map: cell (x, y) covers [x, x+1] by [y, y+1] times cell_size on the
 // ground plane (x, z). blocked[width*height], 0 free.
 nav_mesh nav_mesh_from_cells(nav_world *world, uint32_t width, uint32_t height,

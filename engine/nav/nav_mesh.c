@@ -103,31 +103,6 @@ static void link_flat(nav_mesh_data *m) {
     }
 }
 
-nav_mesh nav_mesh_from_cells(nav_world *w, uint32_t width, uint32_t height, const uint8_t *blocked,
-                             float cell_size) {
-    if (width - 1 >= NAV_GRID_MOST || height - 1 >= NAV_GRID_MOST ||
-        (uint64_t)width * height > MOST_CELLS || !(cell_size > 0.0f && cell_size <= 1e6f)) {
-        core_fail(
-            "nav_mesh_from_cells: %u by %u cells of %g m, expected 1 to %u along a side and a "
-            "size > 0",
-            width, height, (double)cell_size, NAV_GRID_MOST);
-        return CORE_NULL_HANDLE;
-    }
-    nav_mesh_data *m = core_alloc(sizeof *m);
-    m->cell_size = cell_size;
-    m->width = width, m->depth = height;
-    m->tile_cells = CORE_MAX(width, height);
-    nav_mesh_lay_out(m);
-    flat_spans(m, blocked);
-    link_flat(m);
-    m->tile[0].fresh = true;
-    nav_mesh mesh = nav_mesh_adopt(w, m);
-    if (!core_handle_is_null(mesh)) {
-        nav_mesh_settle(w, core_columns_row(&w->mesh.set, mesh));
-    }
-    return mesh;
-}
-
 // ---- from triangles ----
 
 nav_mesh_desc nav_mesh_desc_default(void) {
@@ -150,7 +125,7 @@ static bool need(const char *field, float value, float low, float high) {
 // at most a diagonal further off, and the border a diagonal from where its cell begins.
 static float cell_for_error(float error) { return error / (2.0f * 1.41421357f); }
 
-static bool check(nav_mesh_desc *d) {
+bool nav_mesh_check_desc(nav_mesh_desc *d) {
     nav_mesh_desc def = nav_mesh_desc_default();
     if (d->max_error != 0.0f) {
         if (!need("max_error (m)", d->max_error, 3e-3f, 1e3f)) {
@@ -171,6 +146,33 @@ static bool check(nav_mesh_desc *d) {
            need("agent_height (m)", d->agent_height, 1e-3f, 1e3f) &&
            need("max_climb (m)", d->max_climb, 0.0f, d->agent_height) &&
            need("max_slope (rad)", d->max_slope, 1e-3f, 1.5f);
+}
+
+nav_mesh nav_mesh_from_cells(nav_world *w, uint32_t width, uint32_t height, const uint8_t *blocked,
+                             float cell_size) {
+    if (width - 1 >= NAV_GRID_MOST || height - 1 >= NAV_GRID_MOST ||
+        (uint64_t)width * height > MOST_CELLS || !(cell_size > 0.0f && cell_size <= 1e6f)) {
+        core_fail(
+            "nav_mesh_from_cells: %u by %u cells of %g m, expected 1 to %u along a side and a "
+            "size > 0",
+            width, height, (double)cell_size, NAV_GRID_MOST);
+        return CORE_NULL_HANDLE;
+    }
+    nav_mesh_data *m = core_alloc(sizeof *m);
+    m->desc = nav_mesh_desc_default();
+    m->desc.agent_radius = 0.0f;
+    m->cell_size = m->desc.cell_size = cell_size;
+    m->width = width, m->depth = height;
+    m->tile_cells = CORE_MAX(width, height);
+    nav_mesh_lay_out(m);
+    flat_spans(m, blocked);
+    link_flat(m);
+    m->tile[0].fresh = true;
+    nav_mesh mesh = nav_mesh_adopt(w, m);
+    if (!core_handle_is_null(mesh)) {
+        nav_mesh_settle(w, core_columns_row(&w->mesh.set, mesh));
+    }
+    return mesh;
 }
 
 static core_aabb bounds_of(const core_soup_data *soup) {
@@ -224,7 +226,7 @@ nav_mesh nav_mesh_build(nav_world *w, const core_soup_data *soup, const nav_mesh
         return CORE_NULL_HANDLE;
     }
     nav_mesh_desc desc = *given;
-    if ((!soup && !desc.tile_cells) || !check(&desc)) {
+    if ((!soup && !desc.tile_cells) || !nav_mesh_check_desc(&desc)) {
         return CORE_NULL_HANDLE;
     }
     nav_mesh_data *m = core_alloc(sizeof *m);

@@ -106,6 +106,15 @@ static bool finite_point(core_vec3 p) {
     return core_absf(p.x) <= 1e6f && core_absf(p.y) <= 1e6f && core_absf(p.z) <= 1e6f;
 }
 
+void nav_mesh_append_link(nav_mesh_data *m, const nav_mesh_link_desc *d, bool exists) {
+    if (m->links == m->link_room) {
+        uint32_t wanted = CORE_MAX(m->link_room * 2, 8u);
+        m->link = core_realloc(m->link, m->link_room * sizeof *m->link, wanted * sizeof *m->link);
+        m->link_room = wanted;
+    }
+    m->link[m->links++] = (nav_mesh_link){*d, exists};
+}
+
 uint32_t nav_mesh_add_link(nav_world *w, nav_mesh mesh, const nav_mesh_link_desc *d) {
     uint32_t row;
     nav_mesh_data *m = nav_mesh_find(w, mesh, &row);
@@ -126,14 +135,9 @@ uint32_t nav_mesh_add_link(nav_world *w, nav_mesh mesh, const nav_mesh_link_desc
                   MOST_LINKS);
         return NAV_NO_LINK;
     }
-    if (m->links == m->link_room) {
-        uint32_t wanted = CORE_MAX(m->link_room * 2, 8u);
-        m->link = core_realloc(m->link, m->link_room * sizeof *m->link, wanted * sizeof *m->link);
-        m->link_room = wanted;
-    }
-    m->link[m->links] = (nav_mesh_link){*d, true};
+    nav_mesh_append_link(m, d, true);
     w->mesh.head[row].version++;
-    return m->links++;
+    return m->links - 1;
 }
 
 static nav_mesh_link *find_link(const nav_world *w, nav_mesh mesh, uint32_t link, uint32_t *row) {

@@ -92,10 +92,20 @@ bool nav_soup_vertex_good(const core_soup_data *soup, uint32_t v) {
                      v, (double)p[0], (double)p[1], (double)p[2]);
 }
 
+void nav_piece_sort(nav_piece *p, const nav_mesh_data *m) {
+    const nav_triangle *t = p->triangles.data;
+    p->reach = p->mark ? reach_of(m, p->box.min, p->box.max) : (nav_tiles){.x0 = 1};
+    for (uint32_t i = 0; i < p->count; i++) {
+        p->reach = join(p->reach, reach_of_triangle(m, &t[i]));
+    }
+    if (!p->mark) {
+        sort_into_tiles(p, m);
+    }
+}
+
 bool nav_piece_set(nav_piece *p, const nav_mesh_data *m, const core_soup_data *soup) {
     p->mark = false;
     p->count = soup->triangle_count;
-    p->reach = (nav_tiles){.x0 = 1};
     nav_triangle *t = nav_buffer_fit(&p->triangles, ((size_t)p->count + 1) * sizeof *t);
     memset(t, 0, p->count * sizeof *t); // padding, too: pieces are compared by their bytes
     for (uint32_t v = 0; v < soup->vertex_count; v++) {
@@ -117,9 +127,8 @@ bool nav_piece_set(nav_piece *p, const nav_mesh_data *m, const core_soup_data *s
             return core_fail("nav_mesh_build: triangle %u is of area %u, expected 0 to %u or %u", i,
                              t[i].area, NAV_AREAS - 1, NAV_AREA_CLOSED);
         }
-        p->reach = join(p->reach, reach_of_triangle(m, &t[i]));
     }
-    sort_into_tiles(p, m);
+    nav_piece_sort(p, m);
     return true;
 }
 
@@ -292,7 +301,7 @@ bool nav_mesh_mark(nav_world *w, nav_mesh mesh, uint64_t key, const core_aabb *b
     next->mark = true;
     next->box = *box;
     next->area = area;
-    next->reach = reach_of(m, box->min, box->max);
+    nav_piece_sort(next, m);
     replace(m, key, next);
     return true;
 }

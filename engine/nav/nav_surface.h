@@ -234,6 +234,8 @@ nav_mesh_data *nav_mesh_find(const nav_world *world, nav_mesh mesh, uint32_t *ro
 void nav_mesh_free(nav_mesh_data *mesh);
 nav_mesh nav_mesh_adopt(nav_world *world, nav_mesh_data *mesh);
 size_t nav_mesh_bytes(const nav_mesh_data *mesh);
+bool nav_mesh_check_desc(nav_mesh_desc *desc); // puts in defaults; false + core_fail
+void nav_mesh_append_link(nav_mesh_data *mesh, const nav_mesh_link_desc *desc, bool exists);
 // Lays out a surface with these bounds. False + core_fail.
 bool nav_mesh_measure(nav_mesh_data *mesh, core_aabb bounds);
 static inline uint32_t nav_mesh_tile_of(const nav_mesh_data *m, uint32_t x, uint32_t z) {
@@ -253,6 +255,7 @@ uint32_t nav_mesh_margin(const nav_mesh_data *mesh);
 // Copies the soup into a piece. False + core_fail for vertices and indices that are no good.
 bool nav_piece_set(nav_piece *piece, const nav_mesh_data *mesh, const core_soup_data *soup);
 bool nav_pieces_fill(const nav_mesh_data *mesh, uint32_t tile, nav_field *field);
+void nav_piece_sort(nav_piece *piece, const nav_mesh_data *mesh); // its triangles or box are set
 bool nav_soup_vertex_good(const core_soup_data *soup, uint32_t vertex); // or core_fail
 void nav_piece_free(nav_piece *piece);
 void nav_mesh_drop_pieces(nav_mesh_data *mesh);
