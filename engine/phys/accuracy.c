@@ -166,7 +166,9 @@ static v3 add_scaled(v3 a, v3 b, double s) {
     return (v3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
 }
 
-static bool curved(const solid *s) { return s->type == PHYS_CAPSULE || s->type == PHYS_CYLINDER; }
+static bool curved(const solid *s) {
+    return s->type == PHYS_SPHERE || s->type == PHYS_CAPSULE || s->type == PHYS_CYLINDER;
+}
 
 // Round sides have endless axes: goes downhill from the best of the others (Hooke, Jeeves, "Direct
 // search", 1961).

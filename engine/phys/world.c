@@ -320,8 +320,12 @@ bool phys_world_step(phys_world *w, float dt) {
     phys_islands_update(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_ISLANDS);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    const core_quat *rotations = phys_continuous_begin(w);
     w->solver->step(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    core_stage_begin(w->metrics, CORE_STAGE_PHYS_CCD);
+    phys_continuous_end(w, rotations, dt);
+    core_stage_end(w->metrics, CORE_STAGE_PHYS_CCD);
     phys_joints_break(w);
     finish_step(w, dt);
     phys_spent_tell(w->spent, w->metrics);

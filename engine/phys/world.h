@@ -531,4 +531,9 @@ void phys_finish_rotation(phys_bodies *b, uint32_t row, core_vec3 turn, float dt
 void phys_integrate_free(phys_world *world, uint32_t row, float dt, int substeps);
 void phys_clear_forces(phys_world *world);
 
+// continuous.c: rotations at the start of the step, on the scratch arena; then, after the solver,
+// what went through something is put back to where it met it.
+core_quat *phys_continuous_begin(phys_world *world);
+void phys_continuous_end(phys_world *world, const core_quat *rotations, float dt);
+
 #endif

@@ -194,7 +194,7 @@ static void test_valley_and_ridge(void) {
     TEST_ASSERT_FLOAT_WITHIN(1e-3f, 0.25f, at(box).y);
 }
 
-// Every kind at up to 20 m/s, balls up to 800, against a wall of triangles of no thickness,
+// Every kind at 10 .. 800 m/s against a wall of triangles of no thickness,
 // spinning: none behind.
 static void test_nothing_passes(void) {
     core_soup_data soup = grid(flat);
@@ -206,7 +206,7 @@ static void test_nothing_passes(void) {
                                            PHYS_HULL};
     phys_body body[200];
     for (int k = 0; k < 200; k++) {
-        float v = (k % 5 ? 0.25f : 10.0f) * (float)(1 + k % 80), sign = k % 2 ? 1.0f : -1.0f;
+        float v = 10.0f * (float)(1 + k % 80), sign = k % 2 ? 1.0f : -1.0f;
         core_vec3 from = {pick(&rng, -12, 12), pick(&rng, -12, 12),
                           sign * (1.0f + pick(&rng, 0, 30))};
         body[k] = add(type[k % 5], from, core_v3(pick(&rng, -2, 2), 0, -sign * v), 0.5f);
@@ -219,6 +219,13 @@ static void test_nothing_passes(void) {
         run(1);
         for (int k = 0; k < 200; k++) {
             core_vec3 p = at(body[k]);
+            if (fabsf(p.x) < 16 && fabsf(p.y) < 16 && p.z * (k % 2 ? 1.0f : -1.0f) < 0.0f &&
+                i < 89) {
+                static int c[200];
+                if (!c[k]++)
+                    printf("%d kind %d step %d %g %g %g v %d\n", k, type[k % 5], i, p.x, p.y, p.z,
+                           10 * (1 + k % 80));
+            }
             behind += fabsf(p.x) < 16 && fabsf(p.y) < 16 && p.z * (k % 2 ? 1.0f : -1.0f) < 0.0f;
         }
     }
@@ -449,7 +456,7 @@ static void test_restored_heap_steps_on(void) {
     }
     phys_accuracy a;
     phys_world_accuracy(world, &a);
-    TEST_ASSERT_TRUE(a.penetration_max_m < 0.02);
+    TEST_ASSERT_TRUE(a.penetration_max_m < 0.015);
 }
 
 int main(void) {
