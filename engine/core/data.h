@@ -72,6 +72,16 @@ typedef struct core_soup_data { // triangle soup for collision and navigation
     const uint8_t *area;   // [triangle_count] or NULL
 } core_soup_data;
 
+// A field of heights over a level grid, for collision and for drawing: the same numbers give the
+// same triangles. A cell's two triangles meet on the diagonal from its corner (x, z) to (x + 1, z +
+// 1).
+typedef struct core_heights_data {
+    uint32_t columns, rows; // points along +X and +Z, >= 2 each
+    float step_x, step_z;   // m from point to point, > 0
+    core_vec3 origin;       // where the first point is when its height is 0
+    const float *height;    // [rows*columns] m, row by row: height[z * columns + x]
+} core_heights_data;
+
 typedef struct core_sound_data { // interleaved
     uint32_t channels, rate;     // 1..2; Hz
     uint32_t frame_count;
