@@ -10,14 +10,19 @@
 
 #define NAME(name) CORE_SIMD_NAME(name)
 
-// Writes the lanes of a that m keeps to p, packed; may write CORE_SIMD_WIDTH elements. Returns how
-// many were kept.
-static inline uint32_t compress(uint32_t *p, vm m, vi a) {
-    uint32_t bits = vm_bits(m);
+// Writes the lanes of a that `bits` keeps to p, packed; may write CORE_SIMD_WIDTH elements. Returns
+// how many were kept.
+static inline uint32_t compress(const gfx_cluster_wide *w, uint32_t *p, uint32_t bits, vi a) {
 #if CORE_SIMD_WIDTH == 16
+    (void)w;
     _mm512_storeu_si512(p, _mm512_maskz_compress_epi32((__mmask16)bits, a));
     return (uint32_t)__builtin_popcount(bits);
+#elif CORE_SIMD_WIDTH == 8
+    __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const void *)w->kept[bits]));
+    _mm256_storeu_si256((void *)p, _mm256_permutevar8x32_epi32(a, lanes));
+    return (uint32_t)__builtin_popcount(bits);
 #else
+    (void)w;
     int32_t lane[CORE_SIMD_WIDTH];
     uint32_t n = 0;
     vi_storeu(lane, a);
@@ -29,8 +34,8 @@ static inline uint32_t compress(uint32_t *p, vm m, vi a) {
 #endif
 }
 
-static inline void compress_float(float *p, vm m, vf a) {
-    compress((uint32_t *)(void *)p, m, vi_bits(a));
+static inline void compress_float(const gfx_cluster_wide *w, float *p, uint32_t bits, vf a) {
+    compress(w, (uint32_t *)(void *)p, bits, vi_bits(a));
 }
 
 // Tangents from the eye to the disk of radius r round (s, d): slope and depth of the point of touch
@@ -69,22 +74,23 @@ uint32_t NAME(gfx_cluster_pack)(const gfx_cluster_wide *w, const gfx_cluster_lig
         if (!vm_any(keep)) {
             continue;
         }
+        uint32_t bits = vm_bits(keep);
         vf one = vf_set1(1.0f), slope[4], at[4];
         for (int k = 0; k < 4; ++k) {
             tangent(k < 2 ? x : y, d, r, k & 1 ? 1.0f : -1.0f, &slope[k], &at[k]);
-            compress_float(p->slope[k] + n, keep, slope[k]);
-            compress_float(p->at[k] + n, keep, at[k]);
+            compress_float(w, p->slope[k] + n, bits, slope[k]);
+            compress_float(w, p->at[k] + n, bits, at[k]);
         }
         vf inv_lo = vf_select(vf_gt(lo, vf_zero()), vf_div(one, lo), vf_set1(1e30f));
-        compress_float(p->x + n, keep, x);
-        compress_float(p->y + n, keep, y);
-        compress_float(p->depth + n, keep, d);
-        compress_float(p->radius + n, keep, r);
-        compress_float(p->lo + n, keep, lo);
-        compress_float(p->hi + n, keep, hi);
-        compress_float(p->inv_lo + n, keep, inv_lo);
-        compress_float(p->inv_hi + n, keep, vf_div(one, hi));
-        n += compress(p->id + n, keep, vi_add(vi_set1((int32_t)i), vi_iota()));
+        compress_float(w, p->x + n, bits, x);
+        compress_float(w, p->y + n, bits, y);
+        compress_float(w, p->depth + n, bits, d);
+        compress_float(w, p->radius + n, bits, r);
+        compress_float(w, p->lo + n, bits, lo);
+        compress_float(w, p->hi + n, bits, hi);
+        compress_float(w, p->inv_lo + n, bits, inv_lo);
+        compress_float(w, p->inv_hi + n, bits, vf_div(one, hi));
+        n += compress(w, p->id + n, bits, vi_add(vi_set1((int32_t)i), vi_iota()));
     }
     for (uint32_t i = n; i < n + CORE_LANES; ++i) { // lanes beyond the end are in no slice
         p->lo[i] = 1e30f, p->hi[i] = -1e30f;
@@ -178,20 +184,20 @@ static inline void refine_rows(const gfx_cluster_wide *w, float y, float d, floa
     }
 }
 
-// Columns of a group of 16 that the sphere (x, d, r) touches.
+// Columns of a group of 16 that the sphere (x, d, r) touches: it reaches beyond the column's left
+// plane, and back over the next one's. The last column's right plane is left to the rectangle.
 static inline uint32_t column_mask(const gfx_cluster_planes *p, uint32_t first, float x, float d,
                                    float r) {
     vf xs = vf_set1(x), ds = vf_set1(d), rs = vf_set1(r), minus = vf_set1(-r);
-    uint32_t mask = 0;
+    uint32_t starts = 0, ends = 0;
     for (uint32_t i = 0; i < 16; i += CORE_SIMD_WIDTH) {
         uint32_t k = first + i;
         vf left =
             vf_mad(vf_loadu(p->ns + k), xs, vf_mad(vf_loadu(p->nd + k), ds, vf_loadu(p->nc + k)));
-        vf right = vf_mad(vf_loadu(p->ns + k + 1), xs,
-                          vf_mad(vf_loadu(p->nd + k + 1), ds, vf_loadu(p->nc + k + 1)));
-        mask |= vm_bits(vm_and(vf_ge(left, minus), vf_le(right, rs))) << i;
+        starts |= vm_bits(vf_ge(left, minus)) << i;
+        ends |= vm_bits(vf_le(left, rs)) << i;
     }
-    return mask;
+    return starts & (ends >> 1 | 0x8000u);
 }
 
 typedef struct corners { // of a vector of cells of one row and slice
@@ -329,6 +335,25 @@ uint32_t NAME(gfx_cluster_record)(const gfx_cluster_wide *w, uint32_t k, gfx_clu
     return pairs;
 }
 
+// Which of a vector of records from i on have a bit in their masks.
+static inline uint32_t records_with(const uint16_t *mask, uint32_t i, uint32_t n, uint32_t bit) {
+    uint32_t have = n - i < CORE_SIMD_WIDTH ? (1u << (n - i)) - 1u : (1u << CORE_SIMD_WIDTH) - 1u;
+#if CORE_SIMD_WIDTH == 16
+    __m256i m = _mm256_load_si256((const void *)(mask + i));
+    return have & _mm256_test_epi16_mask(m, _mm256_set1_epi16((short)(1 << bit)));
+#elif CORE_SIMD_WIDTH == 8
+    __m128i m = _mm_load_si128((const void *)(mask + i));
+    m = _mm_sll_epi16(m, _mm_cvtsi32_si128(15 - (int)bit)); // into the sign, which packing keeps
+    return have & (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(m, _mm_setzero_si128()));
+#else
+    uint32_t bits = 0;
+    for (uint32_t lane = 0; lane < CORE_SIMD_WIDTH; ++lane) {
+        bits |= (mask[i + lane] >> bit & 1u) << lane;
+    }
+    return have & bits;
+#endif
+}
+
 void NAME(gfx_cluster_compact)(const gfx_cluster_wide *w, const gfx_cluster_records *r,
                                gfx_cluster_slice *out) {
     const gfx_cluster_grid *g = w->grid;
@@ -338,20 +363,10 @@ void NAME(gfx_cluster_compact)(const gfx_cluster_wide *w, const gfx_cluster_reco
         uint32_t list = row * groups + column / 16, n = r->count[list];
         const uint32_t *id = r->id + list * r->stride;
         const uint16_t *mask = r->mask + list * r->stride;
-        uint32_t bit = column % 16;
-#if CORE_SIMD_WIDTH == 16
-        for (uint32_t i = 0; i < n; i += 16) {
-            __m256i m = _mm256_load_si256((const void *)(mask + i));
-            __mmask16 keep = _mm256_test_epi16_mask(m, _mm256_set1_epi16((short)(1 << bit)));
-            keep &= vm_first((int)(n - i)).v;
-            at += compress(out->light + at, (vm){keep}, vi_load((const int32_t *)id + i));
+        for (uint32_t i = 0; i < n; i += CORE_SIMD_WIDTH) {
+            uint32_t bits = records_with(mask, i, n, column % 16);
+            at += compress(w, out->light + at, bits, vi_load((const int32_t *)id + i));
         }
-#else
-        for (uint32_t i = 0; i < n; ++i) {
-            out->light[at] = id[i];
-            at += mask[i] >> bit & 1u;
-        }
-#endif
         out->end[cell] = at;
     }
     out->total = at;

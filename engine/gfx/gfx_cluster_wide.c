@@ -15,6 +15,16 @@ typedef struct wide_state { // lives in gfx_clusters.wide between calls
     uint32_t start[GFX_CLUSTER_SIDE];
 } wide_state;
 
+static void set_kept(gfx_cluster_wide *w) {
+    for (uint32_t mask = 0; mask < 256; ++mask) {
+        uint32_t n = 0;
+        for (uint8_t lane = 0; lane < 8; ++lane) {
+            w->kept[mask][n] = lane;
+            n += mask >> lane & 1u;
+        }
+    }
+}
+
 static void set_planes(gfx_cluster_planes *p, const float *bound, uint32_t count,
                        bool orthographic) {
     for (uint32_t i = 0; i < GFX_CLUSTER_SIDE + CORE_LANES; ++i) {
@@ -93,7 +103,8 @@ static gfx_cluster_records *worker_records(wide_state *s, uint32_t worker) {
 static void slice_job(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
     wide_state *s = ctx;
     (void)chunk;
-    for (uint32_t k = begin; k < end; ++k) {
+    for (uint32_t i = begin; i < end; ++i) {
+        uint32_t k = s->kernel.grid->slices - 1 - i; // the far ones, which hold most, come first
         gfx_cluster_records *r = worker_records(s, worker);
         gfx_cluster_slice *out = &s->slice[k];
         uint32_t pairs = CORE_SIMD_SELECT(gfx_cluster_record)(&s->kernel, k, r);
@@ -122,6 +133,7 @@ void gfx_clusters_assign_wide(gfx_clusters *c, const gfx_cluster_grid *g,
                               const gfx_cluster_lights *lights, core_jobs *jobs) {
     if (!c->wide) {
         c->wide = core_alloc(sizeof(wide_state));
+        set_kept(&((wide_state *)c->wide)->kernel);
     }
     wide_state *s = c->wide;
     set_grid(&s->kernel, g);

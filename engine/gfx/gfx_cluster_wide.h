@@ -33,6 +33,8 @@ enum { GFX_CLUSTER_PACKED_COLUMNS = 17 };
 
 typedef struct gfx_cluster_wide {
     const gfx_cluster_grid *grid;
+    // For each mask of eight lanes, those that it keeps, packed: sets without a compressing store.
+    uint8_t kept[256][8];
     gfx_cluster_planes column, row;
     float slice_lo[GFX_CLUSTER_SIDE], slice_hi[GFX_CLUSTER_SIDE]; // widened bounds
     float scale_x, scale_y, mid_x, mid_y;                         // slope to column, row

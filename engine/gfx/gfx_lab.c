@@ -16,10 +16,14 @@ static core_vec3 light_position(core_rng *rng) {
     return core_v3(100.0f * x - 50.0f, 10.0f * y, 100.0f * z - 50.0f);
 }
 
-static void add_lights(gfx_world *world, uint32_t n, float radius) {
-    core_rng rng = core_rng_make(1, CORE_RNG_ENGINE);
+// Spots of 30 degrees, pointing anywhere, make up a part of them.
+static void add_lights(gfx_world *world, uint32_t n, float radius, float spots) {
+    core_rng rng = core_rng_make(1, CORE_RNG_ENGINE), kinds = core_rng_make(3, CORE_RNG_ENGINE);
     for (uint32_t i = 0; i < n; ++i) {
-        gfx_light_desc d = gfx_light_desc_default(GFX_POINT);
+        bool spot = core_rng_float(&kinds) < spots;
+        gfx_light_desc d = gfx_light_desc_default(spot ? GFX_SPOT : GFX_POINT);
+        d.direction = core_v3_sub(light_position(&kinds), core_v3(0.0f, 5.0f, 0.0f));
+        d.inner = 0.3f, d.outer = CORE_PI_F / 6.0f;
         d.position = light_position(&rng);
         d.radius = radius;
         d.intensity = 4.0f;
@@ -37,7 +41,7 @@ static gfx_world *lab_world(const core_lab_case *c) {
         return NULL;
     }
     add_lights(world, (uint32_t)core_lab_number(c, "n", 1024),
-               (float)core_lab_number(c, "radius", 5));
+               (float)core_lab_number(c, "radius", 5), (float)core_lab_number(c, "spots", 0));
     gfx_camera camera = {.position = eye};
     gfx_world_set_camera(world, &camera);
     return world;
@@ -107,7 +111,7 @@ static bool run_cluster(const core_lab_case *c, core_json *out) {
 
 const core_lab_kernel gfx_lab_cluster = {
     "gfx.cluster", "light assignment: list entries, CPU and wall time of one assignment",
-    "method: naive|per_light|simd; n, radius, threads, timed", run_cluster};
+    "method: naive|per_light|simd; n, radius, spots: part of n, threads, timed", run_cluster};
 
 // ---- whole frames ----
 
