@@ -160,8 +160,11 @@ typedef struct anim_blend_point {
     anim_clip clip;
     float value;
 } anim_blend_point;
+// A state with neither clip nor blend tree holds a machine within: the states that name it, of
+// which the first is where it is entered. Transitions from it leave any of them.
 typedef struct anim_state_desc {
-    const char *name; // unique in the machine
+    const char *name;   // unique in the machine
+    const char *within; // state listed before it that holds this one; NULL: none
     anim_clip clip;
     const anim_blend_point *blend; // in place of clip: ascending values, looping clips
     uint32_t blend_count;
@@ -193,7 +196,7 @@ typedef enum anim_fade {
     ANIM_FADE_SMOOTH // 3s^2 - 2s^3: cubic Hermite with zero end slopes
 } anim_fade;
 typedef struct anim_transition_desc {
-    const char *from, *to; // from NULL: any state but `to`
+    const char *from, *to; // from NULL: any state but `to` and those in it
     anim_when when;
     anim_condition_fn *condition;
     void *ctx;
@@ -242,7 +245,10 @@ char *anim_machine_dot(const anim_world *world, anim_machine machine, anim_insta
 // it was leaving), onEnter(B). At its end: onExit(A). Zero length does both at once: onExit(A)
 // comes first. onTick(current state) follows each update's transitions. B is the current state from
 // the start of the transition on; a later transition interrupts it from a snapshot of the blended
-// pose.
+// pose. A state that holds others is entered before the first of them and left after the last; a
+// step from one of its states to another does neither. Its onTick comes before theirs, its speed is
+// a factor on theirs. It is finished when the state played in it is and no transition leads on: its
+// own ANIM_WHEN_FINISHED come after all others, whatever the order.
 
 // ---- instances ----
 typedef struct anim_instance_desc {
@@ -304,6 +310,8 @@ bool anim_instance_set_parameter(anim_world *world, anim_instance instance, cons
 bool anim_instance_parameter(const anim_world *world, anim_instance instance, const char *name,
                              float *out);
 bool anim_instance_send(anim_world *world, anim_instance instance, const char *event);
+// Whether the named state is the current one or holds it.
+bool anim_instance_in(const anim_world *world, anim_instance instance, const char *state);
 const char *anim_instance_state(const anim_world *world, anim_instance instance); // "" without one
 // Progress [0, 1) of a running cross-fade and the state left; 1 when none runs.
 float anim_instance_fade(const anim_world *world, anim_instance instance, const char **from);

@@ -47,7 +47,9 @@ typedef struct anim_clip_res {
 
 typedef struct anim_state {
     char name[CORE_NAME_MAX];
-    anim_clip clip; // of a blend tree: its first
+    int32_t parent; // state that holds it, -1: none
+    int32_t entry;  // state that plays when this is entered: itself unless it holds others
+    anim_clip clip; // of a blend tree: its first; null when it holds others
     uint32_t first_point, point_count, blend_parameter;
     anim_loop loop;
     float speed;
@@ -67,6 +69,7 @@ typedef struct anim_transition {
     float value, length;
     anim_fade fade;
     bool uninterruptible, sync;
+    bool last; // of a state that holds others, when they are finished: after all other transitions
 } anim_transition;
 
 typedef struct anim_machine_res {
@@ -79,8 +82,26 @@ typedef struct anim_machine_res {
     char parameter[ANIM_MAX_PARAMETERS][CORE_NAME_MAX];
     float start_value[ANIM_MAX_PARAMETERS];
     uint32_t event_count, parameter_count;
+    bool nested; // some states hold others
     uint32_t users;
 } anim_machine_res;
+
+// Whether the state is `outer` or held by it.
+static inline bool anim_state_in(const anim_machine_res *m, int32_t state, int32_t outer) {
+    while (state >= 0 && state != outer) {
+        state = m->state[state].parent;
+    }
+    return state >= 0;
+}
+// Whether a transition may leave the state that plays.
+static inline bool anim_transition_leaves(const anim_machine_res *m, const anim_transition *t,
+                                          int32_t state) {
+    if (t->from == state) {
+        return true;
+    }
+    bool from = t->from < 0 || anim_state_in(m, state, t->from);
+    return from && (t->to == t->from || !anim_state_in(m, state, t->to));
+}
 
 // What plays: a state of the player's machine (state >= 0) or a clip by itself.
 typedef struct anim_slot {

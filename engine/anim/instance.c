@@ -234,8 +234,9 @@ bool anim_instance_go(anim_world *w, anim_instance h, const char *state, float l
     }
     for (uint32_t i = 0; i < m->state_count; i++) {
         if (strcmp(m->state[i].name, state) == 0) {
+            int32_t entry = m->state[i].entry;
             anim_slot to = {
-                .clip = m->state[i].clip, .state = (int32_t)i, .loop = m->state[i].loop};
+                .clip = m->state[entry].clip, .state = entry, .loop = m->state[entry].loop};
             anim_player_start(w, row, p, to, length, fade, false);
             return true;
         }
@@ -436,6 +437,17 @@ const char *anim_instance_state(const anim_world *w, anim_instance h) {
     return anim_get_machine(w, w->players.machine[p])->state[w->players.now[p].state].name;
 }
 
+bool anim_instance_in(const anim_world *w, anim_instance h, const char *state) {
+    uint32_t row, p = player_row(w, h, &row);
+    const anim_machine_res *m = p == CORE_NO_ROW ? NULL : machine_of(w, p);
+    for (uint32_t i = 0; m && i < m->state_count; i++) {
+        if (strcmp(m->state[i].name, state) == 0) {
+            return anim_state_in(m, w->players.now[p].state, (int32_t)i);
+        }
+    }
+    return m && anim_unknown("no state", state, m->state, sizeof *m->state, m->state_count);
+}
+
 float anim_instance_fade(const anim_world *w, anim_instance h, const char **from) {
     uint32_t row, p = player_row(w, h, &row);
     if (from) {
@@ -460,7 +472,7 @@ uint32_t anim_instance_transitions(const anim_world *w, anim_instance h, const c
     int32_t state = w->players.now[p].state;
     for (uint32_t i = 0; i < m->transition_count; i++) {
         const anim_transition *t = &m->transition[i];
-        if (t->from == state || (t->from < 0 && t->to != state)) {
+        if (anim_transition_leaves(m, t, state)) {
             if (n < capacity) {
                 to[n] = m->state[t->to].name;
             }

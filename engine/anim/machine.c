@@ -50,6 +50,42 @@ static bool parameter_number(const anim_machine_res *m, const char *name, uint32
                         m->parameter_count);
 }
 
+// Which state holds this one; its entry is the first that does.
+static bool add_within(anim_machine_res *m, anim_state *s, const anim_state_desc *d) {
+    s->parent = -1;
+    if (!d->within) {
+        return true;
+    }
+    s->parent = find_state(m, d->within);
+    if (s->parent < 0) {
+        return false;
+    }
+    anim_state *outer = &m->state[s->parent];
+    if (!core_handle_is_null(outer->clip)) {
+        return core_fail("state machine: state \"%s\" plays a clip, so it cannot hold \"%s\"",
+                         outer->name, s->name);
+    }
+    m->nested = true;
+    return true;
+}
+
+// Entries of the states that hold others: the first state in each, down to one that plays.
+static bool find_entries(anim_machine_res *m) {
+    for (uint32_t i = m->state_count; i-- > 0;) {
+        anim_state *s = &m->state[i];
+        s->entry = core_handle_is_null(s->clip) ? -1 : (int32_t)i;
+        for (uint32_t k = i + 1; s->entry < 0 && k < m->state_count; k++) {
+            s->entry = m->state[k].parent == (int32_t)i ? m->state[k].entry : -1;
+        }
+        if (s->entry < 0) {
+            return core_fail("state machine: state \"%s\" needs a clip that exists, or states "
+                             "within it",
+                             s->name);
+        }
+    }
+    return true;
+}
+
 static bool add_points(const anim_world *w, anim_machine_res *m, anim_state *s,
                        const anim_state_desc *d) {
     s->first_point = m->point_count;
@@ -82,25 +118,26 @@ static bool add_state(anim_world *w, anim_machine_res *m, const anim_state_desc 
             return core_fail("state machine: two states are called \"%s\"", s->name);
         }
     }
-    if (!add_points(w, m, s, d)) {
+    if (!add_within(m, s, d) || !add_points(w, m, s, d)) {
         return false;
     }
     anim_clip clip = d->blend_count ? d->blend[0].clip : d->clip;
-    anim_clip_res *c = anim_get_clip(w, clip);
-    if (!c) {
+    bool holds = core_handle_is_null(clip);
+    anim_clip_res *c = holds ? NULL : anim_get_clip(w, clip);
+    if (!c && !holds) {
         return core_fail("state machine: state \"%s\" needs a clip that exists", s->name);
     }
-    if (m->state_count > 0 && !core_handle_equal(c->skeleton, m->skeleton)) {
-        return core_fail("state machine: state \"%s\": clip %s is for another skeleton than state "
-                         "\"%s\"",
-                         s->name, c->name, m->state[0].name);
+    if (c && !core_handle_is_null(m->skeleton) && !core_handle_equal(c->skeleton, m->skeleton)) {
+        return core_fail("state machine: state \"%s\": clip %s is for another skeleton than the "
+                         "states before it",
+                         s->name, c->name);
     }
     if (d->loop > ANIM_PING_PONG || !isfinite(d->speed)) {
         return core_fail("state machine: state \"%s\": loop %d, speed %g; expected a loop mode and "
                          "a finite speed",
                          s->name, (int)d->loop, d->speed);
     }
-    m->skeleton = c->skeleton;
+    m->skeleton = c ? c->skeleton : m->skeleton;
     s->clip = clip;
     s->loop = d->blend_count ? ANIM_LOOP : d->loop;
     s->speed = d->speed == 0 ? 1 : d->speed;
@@ -143,6 +180,8 @@ static bool add_transition(anim_machine_res *m, const anim_transition_desc *d) {
                          d->length);
     }
     t->when = d->when;
+    t->last = d->when == ANIM_WHEN_FINISHED && t->from >= 0 &&
+              core_handle_is_null(m->state[t->from].clip);
     t->condition = d->condition;
     t->ctx = d->ctx;
     t->compare = d->compare;
@@ -160,6 +199,9 @@ static bool add_all(anim_world *w, anim_machine_res *m, const anim_machine_desc 
         if (!add_state(w, m, &d->state[i])) {
             return false;
         }
+    }
+    if (!find_entries(m)) {
+        return false;
     }
     for (uint32_t i = 0; i < d->transition_count; i++) {
         if (!add_transition(m, &d->transition[i])) {
@@ -185,13 +227,15 @@ static bool fill(anim_world *w, anim_machine_res *m, const anim_machine_desc *d)
         return false;
     }
     int32_t initial = d->initial ? find_state(m, d->initial) : 0;
-    m->initial = (uint32_t)initial;
+    m->initial = initial < 0 ? 0 : (uint32_t)m->state[initial].entry;
     return initial >= 0;
 }
 
 static void count_users(anim_world *w, const anim_machine_res *m, int by) {
     for (uint32_t i = 0; i < m->state_count; i++) {
-        anim_get_clip(w, m->state[i].clip)->users += (uint32_t)by;
+        if (m->state[i].entry == (int32_t)i) {
+            anim_get_clip(w, m->state[i].clip)->users += (uint32_t)by;
+        }
     }
     for (uint32_t i = 0; i < m->point_count; i++) {
         anim_get_clip(w, m->point[i].clip)->users += (uint32_t)by;

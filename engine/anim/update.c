@@ -18,6 +18,12 @@ static const anim_state *state_of(const anim_world *w, uint32_t p, const anim_sl
     return slot->state < 0 ? NULL : &anim_get_machine(w, w->players.machine[p])->state[slot->state];
 }
 
+// The state that holds this one; NULL without.
+static const anim_state *outer_of(const anim_world *w, uint32_t p, const anim_state *s) {
+    const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
+    return s->parent < 0 ? NULL : &m->state[s->parent];
+}
+
 // Length of one period of a slot's own time.
 static float period(const anim_motion *m) {
     return m->loop == ANIM_PING_PONG ? 2 * m->length : m->length;
@@ -149,7 +155,7 @@ static slot_step advance(anim_world *w, uint32_t row, uint32_t p, bool leaving, 
     }
     const anim_state *s = state_of(w, p, slot);
     float rate = w->instances.speed[row] * base_rate(&m, s);
-    if (s) {
+    for (; s; s = outer_of(w, p, s)) {
         rate *= s->speed;
         if (s->speed_fn) {
             float phase = anim_motion_time(&m, slot->time) / m.length;
@@ -170,6 +176,38 @@ static void call(anim_world *w, uint32_t row, anim_state_fn *fn, void *ctx) {
     }
 }
 
+// onExit of a state and of those around it that do not hold `now`, from the inside out. Callbacks
+// may destroy the instance or give it another machine's place, so the machine is looked up each
+// time.
+static void leave_states(anim_world *w, uint32_t row, uint32_t p, int32_t left, int32_t now) {
+    bool itself = true;
+    while (left >= 0 && !doomed(w, row)) {
+        const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
+        if (!itself && anim_state_in(m, now, left)) {
+            return;
+        }
+        const anim_state *s = &m->state[left];
+        left = s->parent;
+        itself = false;
+        call(w, row, s->on_exit, s->ctx);
+    }
+}
+
+// onEnter from the outside in, but for states that held `before`.
+static void enter_states(anim_world *w, uint32_t row, uint32_t p, int32_t before, int32_t now) {
+    int32_t path[ANIM_MAX_STATES];
+    uint32_t depth = 0;
+    const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
+    for (int32_t s = now; s >= 0 && (s == now || !anim_state_in(m, before, s));
+         s = m->state[s].parent) {
+        path[depth++] = s;
+    }
+    while (depth > 0 && !doomed(w, row) && w->players.now[p].state == now) {
+        const anim_state *s = &m->state[path[--depth]];
+        call(w, row, s->on_enter, s->ctx);
+    }
+}
+
 static void set_slot(anim_world *w, anim_slot *slot, anim_slot value) {
     if (!core_handle_is_null(value.clip)) {
         anim_get_clip(w, value.clip)->users++;
@@ -181,14 +219,12 @@ static void set_slot(anim_world *w, anim_slot *slot, anim_slot value) {
 }
 
 static void exit_from(anim_world *w, uint32_t row, uint32_t p) {
-    const anim_state *left = state_of(w, p, &w->players.from[p]);
+    int32_t left = w->players.from[p].state, now = w->players.now[p].state;
     set_slot(w, &w->players.from[p], (anim_slot){.state = -1});
     anim_snapshot_drop(w, w->players.snapshot[p]);
     w->players.snapshot[p] = CORE_NULL_HANDLE;
     w->players.flags[p] = 0;
-    if (left) {
-        call(w, row, left->on_exit, left->ctx);
-    }
+    leave_states(w, row, p, left, now);
 }
 
 static core_handle freeze(anim_world *w, uint32_t row, uint32_t p) {
@@ -205,6 +241,7 @@ static core_handle freeze(anim_world *w, uint32_t row, uint32_t p) {
 void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, float length,
                        anim_fade fade, bool locked) {
     bool interrupts = (w->players.flags[p] & ANIM_FADING) != 0;
+    int32_t before = w->players.now[p].state;
     core_handle snapshot = CORE_NULL_HANDLE;
     if (interrupts) {
         snapshot = length > 0 ? freeze(w, row, p) : CORE_NULL_HANDLE;
@@ -220,9 +257,8 @@ void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, fl
     if (!(length > 0)) {
         exit_from(w, row, p);
     }
-    const anim_state *entered = state_of(w, p, &to);
-    if (entered) {
-        call(w, row, entered->on_enter, entered->ctx);
+    if (to.state >= 0) {
+        enter_states(w, row, p, before, to.state);
     }
 }
 
@@ -280,26 +316,61 @@ static float start_time(const anim_world *w, uint32_t p, const anim_slot *to, co
     return w->players.now[p].time / period(&source) * period(&target);
 }
 
+static void follow(anim_world *w, uint32_t row, uint32_t p, const anim_transition *t) {
+    const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
+    int32_t entry = m->state[t->to].entry;
+    const anim_state *to = &m->state[entry];
+    anim_slot slot = {.clip = to->clip, .state = entry, .loop = to->loop};
+    slot.time = start_time(w, p, &slot, to, t->sync);
+    anim_player_start(w, row, p, slot, t->length, t->fade, t->uninterruptible);
+}
+
+// Whether a state holds the one that plays and something within it goes on when that has finished.
+static bool goes_on(const anim_machine_res *m, const anim_transition *t, int32_t state) {
+    for (uint32_t i = 0; i < m->transition_count; i++) {
+        const anim_transition *u = &m->transition[i];
+        if (u->when == ANIM_WHEN_FINISHED && u->from != t->from && u->from >= 0 &&
+            anim_state_in(m, u->from, t->from) && anim_transition_leaves(m, u, state)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void follow_transitions(anim_world *w, uint32_t row, uint32_t p, const slot_step *step) {
     int32_t state = w->players.now[p].state;
     if (state < 0 || (w->players.flags[p] & ANIM_LOCKED)) {
         return;
     }
     const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
-    for (uint32_t i = 0; i < m->transition_count; i++) {
-        const anim_transition *t = &m->transition[i];
-        bool applies = t->from == state || (t->from < 0 && t->to != state);
-        if (!applies || !matches(w, row, p, t, step)) {
-            continue;
+    for (int last = 0; last <= m->nested; last++) {
+        for (uint32_t i = 0; i < m->transition_count; i++) {
+            const anim_transition *t = &m->transition[i];
+            if (t->last != last || !anim_transition_leaves(m, t, state) ||
+                (last && goes_on(m, t, state)) || !matches(w, row, p, t, step)) {
+                continue;
+            }
+            if (!doomed(w, row) && w->players.now[p].state == state) {
+                follow(w, row, p, t); // else a condition changed the instance itself
+            }
+            return;
         }
-        if (doomed(w, row) || w->players.now[p].state != state) {
-            return; // a condition changed the instance itself
+    }
+}
+
+static void tick(anim_world *w, uint32_t row, uint32_t p, float dt) {
+    const anim_machine_res *m = anim_get_machine(w, w->players.machine[p]);
+    int32_t path[ANIM_MAX_STATES];
+    uint32_t depth = 0;
+    for (int32_t s = w->players.now[p].state; s >= 0; s = m->state[s].parent) {
+        path[depth++] = s;
+    }
+    int32_t state = w->players.now[p].state;
+    while (depth > 0 && !doomed(w, row) && w->players.now[p].state == state) {
+        const anim_state *s = &m->state[path[--depth]];
+        if (s->on_tick) {
+            s->on_tick(s->ctx, w, handle_of(w, row), dt);
         }
-        const anim_state *to = &m->state[t->to];
-        anim_slot slot = {.clip = to->clip, .state = t->to, .loop = to->loop};
-        slot.time = start_time(w, p, &slot, to, t->sync);
-        anim_player_start(w, row, p, slot, t->length, t->fade, t->uninterruptible);
-        return;
     }
 }
 
@@ -335,9 +406,8 @@ static void update_player(anim_world *w, uint32_t row, uint32_t p, float dt) {
         follow_transitions(w, row, p, &step);
     }
     w->players.events[p] = 0;
-    const anim_state *now = state_of(w, p, &w->players.now[p]);
-    if (now && now->on_tick && !doomed(w, row)) {
-        now->on_tick(now->ctx, w, handle_of(w, row), dt);
+    if (w->players.now[p].state >= 0) {
+        tick(w, row, p, dt);
     }
 }
 

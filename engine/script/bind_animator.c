@@ -151,6 +151,11 @@ static int get_state(script *s, lua_State *L, void *args) {
     lua_pushstring(L, anim_instance_state(world_of(s), *(core_handle *)args));
     return 1;
 }
+static int is_in(script *s, lua_State *L, void *args) {
+    const text_args *a = args;
+    lua_pushboolean(L, anim_instance_in(world_of(s), a->self, a->text));
+    return 1;
+}
 static int get_fade(script *s, lua_State *L, void *args) {
     const char *from;
     lua_pushnumber(L, (double)anim_instance_fade(world_of(s), *(core_handle *)args, &from));
@@ -321,6 +326,10 @@ const bind_fn bind_animator_methods[] = {
     {"getState", "Name of the machine's current state, \"\" without one.", NULL,
      BIND_RETURNS({"state", "string", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 4,
      .run = get_state},
+    {"isIn", "Whether a state of its machine is the current one or holds it.",
+     BIND_ARGS({"state", BIND_STRING, BIND_AT(text_args, text), "of its machine"}),
+     BIND_RETURNS({"inside", "boolean", NULL}), sizeof(text_args), BIND_RUNNING, .mod = true,
+     .cost = 4, .run = is_in},
     {"getFade", "Progress of the cross-fade (1: none runs) and the state it leaves.", NULL,
      BIND_RETURNS({"progress", "number", NULL}, {"from", "string", NULL}), SELF, BIND_RUNNING,
      .mod = true, .cost = 4, .run = get_fade},

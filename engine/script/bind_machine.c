@@ -11,7 +11,7 @@ typedef struct point_options {
     float value;
 } point_options;
 typedef struct state_options {
-    const char *name, *blend_parameter;
+    const char *name, *within, *blend_parameter;
     core_handle clip;
     bind_list blend;
     int loop;
@@ -138,8 +138,11 @@ static const anim_blend_point *read_points(lua_State *L, const bind_list *list) 
 
 static void read_state(script *s, lua_State *L, int table, const state_options *o, uint32_t i,
                        anim_state_desc *out) {
-    *out = (anim_state_desc){
-        .name = o->name, .clip = o->clip, .loop = (anim_loop)o->loop, .speed = o->speed};
+    *out = (anim_state_desc){.name = o->name,
+                             .within = o->within,
+                             .clip = o->clip,
+                             .loop = (anim_loop)o->loop,
+                             .speed = o->speed};
     out->blend = read_points(L, &o->blend);
     out->blend_count = o->blend.count;
     out->blend_parameter = o->blend_parameter;
@@ -273,6 +276,11 @@ static const bind_arg point_fields[] = {
 
 static const bind_arg state_fields[] = {
     {"name", BIND_STRING, BIND_AT(state_options, name), "unique in the machine"},
+    {"within", BIND_STRING, BIND_AT(state_options, within),
+     "a state listed before it, without clip and blend, that holds this one: a machine in a state; "
+     "the "
+     "first held is where it is entered",
+     .optional = true, .def_text = NULL},
     {"clip", BIND_OBJECT, BIND_AT(state_options, clip), "what it plays", .optional = true,
      .def_text = "none", .type = &bind_clip_type},
     {"blend", BIND_LIST, BIND_AT(state_options, blend),
@@ -293,8 +301,8 @@ static const bind_arg state_fields[] = {
     {0}};
 
 static const bind_arg transition_fields[] = {
-    {"from", BIND_STRING, BIND_AT(transition_options, from), "state it leaves (nil: any other)",
-     .optional = true, .def_text = NULL},
+    {"from", BIND_STRING, BIND_AT(transition_options, from),
+     "state it leaves, or any within it (nil: any other)", .optional = true, .def_text = NULL},
     {"to", BIND_STRING, BIND_AT(transition_options, to), "state it enters"},
     CALLBACK("condition", transition_options, condition, has_condition,
              "called each step with the animator; true starts it"),

@@ -427,6 +427,7 @@ local Machine = {}
 
 ---@class Machine.extend.options.states
 ---@field name string unique in the machine
+---@field within? string a state listed before it, without clip and blend, that holds this one: a machine in a state; the first held is where it is entered
 ---@field clip? corsac.Clip what it plays
 ---@field blend? Machine.extend.options.states.blend[] in place of clip: looping clips between which a parameter blends, values ascending
 ---@field blendParameter? string a parameter of the machine
@@ -438,7 +439,7 @@ local Machine = {}
 ---@field getSpeed? function gives a factor on time; called with the animator and the phase from 0 to 1
 
 ---@class Machine.extend.options.transitions
----@field from? string state it leaves (nil: any other)
+---@field from? string state it leaves, or any within it (nil: any other)
 ---@field to string state it enters
 ---@field condition? function called each step with the animator; true starts it
 ---@field event? string starts when sent
@@ -544,6 +545,11 @@ function Animator:getTime() end
 ---Name of the machine's current state, "" without one.
 ---@return string state
 function Animator:getState() end
+
+---Whether a state of its machine is the current one or holds it.
+---@param state string of its machine
+---@return boolean inside
+function Animator:isIn(state) end
 
 ---Progress of the cross-fade (1: none runs) and the state it leaves.
 ---@return number progress
@@ -2015,6 +2021,7 @@ function corsac.anim.newClip(options) end
 
 ---@class corsac.anim.newMachine.options.states
 ---@field name string unique in the machine
+---@field within? string a state listed before it, without clip and blend, that holds this one: a machine in a state; the first held is where it is entered
 ---@field clip? corsac.Clip what it plays
 ---@field blend? corsac.anim.newMachine.options.states.blend[] in place of clip: looping clips between which a parameter blends, values ascending
 ---@field blendParameter? string a parameter of the machine
@@ -2026,7 +2033,7 @@ function corsac.anim.newClip(options) end
 ---@field getSpeed? function gives a factor on time; called with the animator and the phase from 0 to 1
 
 ---@class corsac.anim.newMachine.options.transitions
----@field from? string state it leaves (nil: any other)
+---@field from? string state it leaves, or any within it (nil: any other)
 ---@field to string state it enters
 ---@field condition? function called each step with the animator; true starts it
 ---@field event? string starts when sent

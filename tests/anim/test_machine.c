@@ -473,6 +473,92 @@ static void test_steps_do_not_allocate(void) {
     TEST_ASSERT_EQUAL_UINT64(before, core_alloc_count());
 }
 
+// A fight within a machine: idle, fight { windup, strike, taunt { wink } }.
+static anim_instance spawn_fight(void) {
+    static anim_state_desc s[6];
+    static const anim_transition_desc t[] = {
+        {.from = "fight", .to = "idle", .when = ANIM_WHEN_FINISHED, .length = 0.2f},
+        {.from = "idle", .to = "fight", .when = ANIM_WHEN_EVENT, .event = "attack"},
+        {.from = "fight", .to = "idle", .when = ANIM_WHEN_EVENT, .event = "stop"},
+        {.from = "windup", .to = "strike", .when = ANIM_WHEN_FINISHED},
+        {.from = "fight", .to = "taunt", .when = ANIM_WHEN_EVENT, .event = "mock"}};
+    s[0] = state("idle", slow, ANIM_LOOP);
+    s[1] = state("fight", CORE_NULL_HANDLE, ANIM_LOOP);
+    s[2] = state("windup", hit, ANIM_ONCE);
+    s[3] = state("strike", hit, ANIM_ONCE);
+    s[4] = state("taunt", CORE_NULL_HANDLE, ANIM_LOOP);
+    s[5] = state("wink", fast, ANIM_ONCE);
+    s[2].within = s[3].within = s[4].within = "fight";
+    s[5].within = "taunt";
+    s[1].speed = 0.5f;
+    anim_machine_desc d = anim_machine_desc_default();
+    d.state = s;
+    d.state_count = 6;
+    d.transition = t;
+    d.transition_count = 5;
+    return spawn(&d);
+}
+
+static void test_a_machine_within_a_state(void) {
+    static const struct {
+        const char *send;
+        float seconds;
+        const char *state, *trace;
+    } row[] = {
+        {"attack", 0.1f, "windup", "-idle[windup] +fight[windup] +windup[windup] "},
+        {NULL, 0.8f, "windup", ""}, // half a second of clip at half speed
+        {NULL, 0.2f, "strike", "-windup[strike] +strike[strike] "},
+        {NULL, 0.75f, "idle", "+idle[idle] "}, // 0.2 s before its end, as the fade is long
+        {NULL, 0.3f, "idle", "-strike[idle] -fight[idle] "},
+        {"attack", 0.1f, "windup", "-idle[windup] +fight[windup] +windup[windup] "},
+        {"mock", 0.1f, "wink", "-windup[wink] +taunt[wink] +wink[wink] "},
+        {"mock", 0.1f, "wink", ""}, // it is there already
+        {"stop", 0.1f, "idle", "-wink[idle] -taunt[idle] -fight[idle] +idle[idle] "},
+    };
+    anim_instance who = spawn_fight();
+    for (size_t i = 0; i < CORE_COUNT_OF(row); i++) {
+        char text[16];
+        snprintf(text, sizeof text, "row %zu", i);
+        trace[0] = 0;
+        if (row[i].send) {
+            TEST_ASSERT_TRUE(anim_instance_send(f.world, who, row[i].send));
+        }
+        run(0.05f, (int)(row[i].seconds / 0.05f + 0.5f));
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(row[i].state, anim_instance_state(f.world, who), text);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(row[i].trace, trace, text);
+        bool fights = strcmp(row[i].state, "idle") != 0;
+        TEST_ASSERT_EQUAL(fights, anim_instance_in(f.world, who, "fight"));
+    }
+    TEST_ASSERT_TRUE(anim_instance_go(f.world, who, "taunt", 0, ANIM_FADE_LINEAR));
+    TEST_ASSERT_EQUAL_STRING("wink", anim_instance_state(f.world, who));
+    const char *to[4];
+    TEST_ASSERT_EQUAL_UINT32(2, anim_instance_transitions(f.world, who, to, 4));
+    char *dot = anim_machine_dot(f.world, latest, who);
+    TEST_ASSERT_NOT_NULL(strstr(dot, "subgraph cluster_1 {\n  label=\"fight\";\n"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(dot, "\"windup\" -> \"idle\" [ltail=cluster_1, label=\"1: finished"));
+    TEST_ASSERT_NOT_NULL(strstr(dot, "\"idle\" -> \"windup\" [lhead=cluster_1, "));
+    core_free(dot);
+}
+
+static void test_a_machine_within_is_checked(void) {
+    anim_state_desc s[2] = {state("a", slow, ANIM_LOOP), state("b", fast, ANIM_LOOP)};
+    anim_machine_desc d = anim_machine_desc_default();
+    d.state = s;
+    d.state_count = 2;
+    s[1].within = "a";
+    TEST_ASSERT_TRUE(core_handle_is_null(anim_machine_create(f.world, &d)));
+    TEST_ASSERT_NOT_NULL(strstr(core_last_error(), "\"a\" plays a clip, so it cannot hold \"b\""));
+    s[1].within = "b";
+    TEST_ASSERT_TRUE(core_handle_is_null(anim_machine_create(f.world, &d)));
+    TEST_ASSERT_NOT_NULL(strstr(core_last_error(), "no state"));
+    s[1].within = NULL;
+    s[1].clip = CORE_NULL_HANDLE;
+    TEST_ASSERT_TRUE(core_handle_is_null(anim_machine_create(f.world, &d)));
+    TEST_ASSERT_NOT_NULL(
+        strstr(core_last_error(), "\"b\" needs a clip that exists, or states within"));
+}
+
 static void test_a_machine_in_use_is_extended_and_trimmed(void) {
     static const anim_transition_desc none[] = {
         {.from = "idle", .to = "run", .when = ANIM_WHEN_EVENT, .event = "go"}};
@@ -522,7 +608,7 @@ static void test_dot(void) {
     anim_machine m = anim_machine_create(f.world, &d);
     char *text = anim_machine_dot(f.world, m, i);
     TEST_ASSERT_EQUAL_STRING(
-        "digraph machine {\n  node [shape=box];\n"
+        "digraph machine {\n  compound=true;\n  node [shape=box];\n"
         "  \"on\\\"ly\" [peripheries=2, style=filled];\n  \"hit\" [peripheries=1];\n"
         "  \"*\" -> \"hit\" [label=\"1: on hit\\n0.25 s\"];\n"
         "  \"on\\\"ly\" -> \"hit\" [label=\"2: finished\\n0.5 s smooth\"];\n}\n",
@@ -550,6 +636,8 @@ int main(void) {
     RUN_TEST(test_names_are_checked);
     RUN_TEST(test_resources_in_use_stay);
     RUN_TEST(test_steps_do_not_allocate);
+    RUN_TEST(test_a_machine_within_a_state);
+    RUN_TEST(test_a_machine_within_is_checked);
     RUN_TEST(test_a_machine_in_use_is_extended_and_trimmed);
     RUN_TEST(test_dot);
     return UNITY_END();
