@@ -59,6 +59,7 @@ static const struct {
               " return corsac.phys.newJoint{type = 'ball', a = a, b = b}"},
     {"Mover", "return corsac.phys.newMover{}"},
     {"Material", "return corsac.gfx.newMaterial{}"},
+    {"Emitter", "return corsac.gfx.newEmitter{}"},
     {"Sound", "return corsac.audio.newSound('beep.wav')"},
     {"Source", "return corsac.audio.newSource{sound = corsac.audio.newSound('beep.wav')}"},
 };
@@ -83,7 +84,7 @@ static void push_sample(const bind_type *type) {
     lua_pop(L, 1);
     unsigned before = w.script->phase;
     w.script->phase = BIND_FIXED;
-    TEST_ASSERT_NOT_NULL_MESSAGE(maker_of(type), "a new class of objects needs a line in makers");
+    TEST_ASSERT_NOT_NULL_MESSAGE(maker_of(type), type->name); // a new class needs a line in makers
     TEST_ASSERT_EQUAL_INT(0, luaL_loadstring(L, maker_of(type)));
     int rc = lua_pcall(L, 0, 1, 0);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, rc, lua_tostring(L, -1));
