@@ -64,7 +64,13 @@ mat3x4 skinRows(uint first) {
 }
 #endif
 
-// Normals go with the cofactors of the matrix: right under any scale, mirroring included.
+// -1 where a transform mirrors.
+float handedness(mat3x4 rows) {
+    return dot(cross(rows[0].xyz, rows[1].xyz), rows[2].xyz) < 0.0 ? -1.0 : 1.0;
+}
+
+// Normals go with the cofactors of the matrix, right under any scale; mirroring turns them inside
+// out.
 vec3 transformNormal(mat3x4 rows, vec3 n) {
     vec3 a = rows[0].xyz, b = rows[1].xyz, c = rows[2].xyz;
     return vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
@@ -93,13 +99,14 @@ void main() {
     normal = transformNormal(skin, normal);
 #endif
     v_world = p;
-    v_normal = transformNormal(world, normal);
+    float hand = handedness(world);
+    v_normal = transformNormal(world, normal) * hand;
 #ifdef USE_TEXTURES
     vec3 tangent = a_tangent.xyz;
 #ifdef USE_SKINNING
     tangent = vec4(tangent, 0.0) * skin;
 #endif
-    v_tangent = vec4(vec4(tangent, 0.0) * world, a_tangent.w);
+    v_tangent = vec4(vec4(tangent, 0.0) * world, a_tangent.w * hand);
 #endif
 #endif
 }

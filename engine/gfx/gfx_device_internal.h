@@ -93,8 +93,8 @@ typedef struct gfx_draw_command { // one entry of a GL_DRAW_INDIRECT_BUFFER
 } gfx_draw_command;
 typedef struct gfx_batch { // consecutive commands with one state
     uint32_t features;
-    uint32_t material; // 0 when it has no textures
-    bool double_sided;
+    uint32_t material;           // 0 when it has no textures
+    bool double_sided, mirrored; // mirrored: triangles turn the other way
     uint32_t first, count;
 } gfx_batch;
 typedef struct gfx_draw_list { // one view's part of the frame's batches: opaque ones, then blended

@@ -83,18 +83,26 @@ static const gfx_material_state *material_state(const gfx_device *d, uint32_t ma
     return (const gfx_material_state *)d->materials.state.data + material;
 }
 
+// Whether a transform turns left hands into right ones.
+static bool is_mirrored(const gfx_rows *rows) {
+    const float *m = rows->m;
+    core_vec3 a = {m[0], m[1], m[2]}, b = {m[4], m[5], m[6]}, c = {m[8], m[9], m[10]};
+    return core_v3_dot(core_v3_cross(a, b), c) < 0.0f;
+}
+
 // What a draw call needs of an instance besides its mesh.
 static gfx_batch state_of(const gfx_device *d, const gfx_world *world, const gfx_sort_key *key) {
     const gfx_material_state *m = material_state(d, key->material);
     bool skinned = key->place->skinned && world->instances.palette[key->row];
     return (gfx_batch){.features = m->features | (skinned ? GFX_FEATURE_SKINNING : 0),
                        .material = m->features & GFX_FEATURE_TEXTURES ? key->material : 0,
-                       .double_sided = m->double_sided};
+                       .double_sided = m->double_sided,
+                       .mirrored = is_mirrored(&world->instances.rows[key->row])};
 }
 
 static bool same_state(const gfx_batch *a, const gfx_batch *b) {
     return a->features == b->features && a->material == b->material &&
-           a->double_sided == b->double_sided;
+           a->double_sided == b->double_sided && a->mirrored == b->mirrored;
 }
 
 // Opaque: program and cull state, textures, mesh; a mesh's instances keep the order of their rows.
@@ -110,7 +118,8 @@ static uint64_t sort_key(const gfx_batch *state, const gfx_world *world, const g
         memcpy(&bits, &d2, sizeof bits);
         return 1ull << 63 | (uint64_t)~bits << 16;
     }
-    uint64_t program = (uint64_t)(state->features << 1 | state->double_sided) & 0x7fff;
+    uint32_t sides = (uint32_t)state->double_sided << 1 | state->mirrored;
+    uint64_t program = (uint64_t)(state->features << 2 | sides) & 0x7fff;
     return program << 48 | (uint64_t)(state->material & 0xffffff) << 24 |
            (of->place->number & 0xffffff);
 }
@@ -263,7 +272,7 @@ static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, d->draw_block.name);
     const gfx_batch *batches = d->batches.data;
     GLuint used = 0;
-    bool two_sided = false;
+    bool two_sided = false, mirrored = false, ok = true;
     for (uint32_t i = first; i < end; ++i) {
         const gfx_batch *batch = &batches[i];
         uint32_t own = batch->features;
@@ -272,7 +281,8 @@ static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end
         }
         GLuint program = gfx_shaders_get(&d->shaders, "scene.vert", fragment, features | own);
         if (!program) {
-            return false;
+            ok = false;
+            break;
         }
         if (program != used) {
             glUseProgram(program);
@@ -287,11 +297,16 @@ static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end
             (batch->double_sided ? glDisable : glEnable)(GL_CULL_FACE);
             two_sided = batch->double_sided;
         }
+        if (batch->mirrored != mirrored) {
+            glFrontFace(batch->mirrored ? GL_CW : GL_CCW);
+            mirrored = batch->mirrored;
+        }
         submit_batch(d, batch, instanced);
         world->stats.draws += batch->count;
     }
     glEnable(GL_CULL_FACE);
-    return true;
+    glFrontFace(GL_CCW);
+    return ok;
 }
 
 bool gfx_draws_submit(gfx_device *d, gfx_world *world, const gfx_draw_list *list,

@@ -8,7 +8,7 @@ enum { AUTO_CLUSTERED = 4 };
 
 static void write_light(const gfx_device *d, const gfx_lights *l, uint32_t i,
                         struct gfx_light_block *out) {
-    float r2 = CORE_MIN(l->radius[i] * l->radius[i], 1e37f); // its inverse stays above zero
+    float r2 = CORE_CLAMP(l->radius[i] * l->radius[i], 1e-37f, 1e37f); // so is its inverse
     // The cone falls from 1 at cos(inner) to 0 at cos(outer); others have none.
     float scale = 0.0f, offset = 1.0f;
     if (l->type[i] == GFX_SPOT) {

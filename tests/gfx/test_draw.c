@@ -171,6 +171,44 @@ static void test_prepass_changes_nothing(void) {
 }
 
 // Coarser meshes far away: fewer triangles, and a picture that differs at few silhouettes.
+// Mirrored boxes and spheres look as they do unmirrored, shadows included; a mirrored plane shows
+// its upper side, and one turned over by its scale does not.
+static void test_mirrored_instances(void) {
+    gfx_fixture f = gfx_fixture_open(96, 64, true);
+    gfx_add_sun(f.world, core_v3(-0.4f, -1.0f, -0.7f), 3.0f);
+    gfx_add(f.world, "plane", core_v3(0, -1, 0), core_v3(20, 1, 20), 0.8f, 0.8f, 0.8f);
+    gfx_look(f.world, core_v3(1, 3, 7), core_v3(0, 0, 0));
+    gfx_instance box = gfx_add(f.world, "box", core_v3(-1, 0, 0), core_v3(1, 2, 1), 0.9f, 0.5f, 0);
+    gfx_instance ball =
+        gfx_add(f.world, "sphere", core_v3(1, 0, 0), core_v3(1, 1, 1), 0.1f, 0.5f, 0.9f);
+    float *plain = gfx_fixture_hdr(&f);
+    core_quat still = core_quat_identity();
+    gfx_instance_set_transform(f.world, box, core_v3(-1, 0, 0), still, core_v3(-1, 2, 1));
+    gfx_instance_set_transform(f.world, ball, core_v3(1, 0, 0), still, core_v3(-1, -1, -1));
+    float *mirrored = gfx_fixture_hdr(&f);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4f, 0.0f, gfx_max_difference(plain, mirrored, 96 * 64 * 4));
+    gfx_world_set(f.world, "instancing", "off");
+    float *single = gfx_fixture_hdr(&f);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, gfx_max_difference(single, mirrored, 96 * 64 * 4));
+    core_free(plain);
+    core_free(mirrored);
+    core_free(single);
+    gfx_instance_destroy(f.world, box);
+    gfx_instance_destroy(f.world, ball);
+    for (int turned = 0; turned < 2; ++turned) {
+        gfx_fixture g = gfx_fixture_open(96, 64, true);
+        gfx_instance plane = gfx_add(g.world, "plane", core_v3(0, 0, 0), core_v3(9, 1, 9), 1, 1, 1);
+        gfx_look(g.world, core_v3(0, 3, 7), core_v3(0, 0, 0));
+        gfx_instance_set_transform(g.world, plane, core_v3(0, 0, 0), still,
+                                   turned ? core_v3(9, -1, 9) : core_v3(-9, 1, 9));
+        float *depth = depth_of(&g);
+        TEST_ASSERT_TRUE((depth[96 * 32 + 48] > 0.0f) == !turned);
+        core_free(depth);
+        gfx_fixture_close(&g);
+    }
+    gfx_fixture_close(&f);
+}
+
 static void test_levels_of_detail(void) {
     gfx_fixture f = gfx_fixture_open(192, 128, true);
     scatter(&f, 200);
@@ -327,6 +365,7 @@ int main(void) {
     RUN_TEST(test_skinning);
     RUN_TEST(test_instancing_equals_single_draws);
     RUN_TEST(test_prepass_changes_nothing);
+    RUN_TEST(test_mirrored_instances);
     RUN_TEST(test_levels_of_detail);
     RUN_TEST(test_culling_loses_nothing);
     RUN_TEST(test_culling_on_every_set);
