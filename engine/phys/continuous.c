@@ -7,6 +7,7 @@
 
 #define CORE_PART 0.5f  // of the thinnest half width is taken off
 #define HULL_PART 0.6f  // a hull's core is the hull at this scale about its middle
+#define MIDDLE    1e-3f // m
 #define CLEAR     2e-3f // m: cores nearer than this at the start go no nearer
 #define SLOW_TURN 0.01f // rad, half of the angle
 #define ROUNDS    4
@@ -138,6 +139,15 @@ static void shrink(const guard *g, phys_geom *geom, phys_geom_hull *room) {
     }
 }
 
+static phys_geom middle_ball(const phys_geom *g) {
+    core_vec3 at = g->position;
+    if (g->type == PHYS_HULL) {
+        core_vec3 mean = phys_geom_average(g->hull->vertex, g->hull->vertex_count);
+        at = core_v3_add(at, phys_mat_mul(&g->axes, mean));
+    }
+    return phys_geom_make(PHYS_SPHERE, at, core_quat_identity(), core_v3(0, 0, 0), MIDDLE);
+}
+
 // Earliest time in [t0, *best) at which the core of shape i meets shape j.
 static bool meets(const guard *g, uint32_t i, uint32_t row, uint32_t j, uint32_t other, float t0,
                   float *best) {
@@ -147,6 +157,10 @@ static bool meets(const guard *g, uint32_t i, uint32_t row, uint32_t j, uint32_t
     float t;
     shrink(g, &a.geom, &room);
     float gap = phys_separation(&a.geom, &b.geom, &n);
+    if (gap <= 0.0f) { // sunk deep: at least its middle stays on its side
+        a.geom = middle_ball(&a.geom);
+        gap = phys_separation(&a.geom, &b.geom, &n);
+    }
     if (gap < CLEAR) { // stopped here before: it may leave, turn, or wait to be pushed out
         core_vec3 arm = core_v3_sub(a.geom.position, a.center);
         core_vec3 v = core_v3_add(core_v3_sub(a.v, b.v), core_v3_cross(a.w, arm));
