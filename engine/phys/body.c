@@ -239,7 +239,7 @@ phys_body phys_body_create(phys_world *w, const phys_body_desc *d, const phys_sh
     phys_static_note(w, i);
     w->measured = false;
     w->edited = true;
-    w->trees_stale = true;
+    w->trees_stale = w->shapes_changed = true;
     return h;
 }
 
@@ -259,7 +259,7 @@ bool phys_body_destroy(phys_world *w, phys_body body) {
     }
     phys_joints_drop_body(w, body.index);
     w->order_count = 0;
-    w->trees_stale = w->rows_stale = true;
+    w->trees_stale = w->rows_stale = w->shapes_changed = true;
     w->measured = false;
     w->edited = true;
     return core_columns_remove(&w->bodies.set, body, NULL, NULL);

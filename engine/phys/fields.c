@@ -15,13 +15,17 @@ static bool check_desc(const phys_field_desc *d) {
     if (d->cookie != PHYS_FIELD_COOKIE) {
         return core_fail("phys field: description was not made by phys_field_desc_default");
     }
-    if ((unsigned)d->type > PHYS_FIELD_POINT) {
-        return core_fail("phys field: type %d, expected uniform or point", (int)d->type);
+    if ((unsigned)d->type > PHYS_FIELD_WIND) {
+        return core_fail("phys field: type %d, expected uniform, point or wind", (int)d->type);
     }
     if (d->type == PHYS_FIELD_UNIFORM && !phys_finite3(d->acceleration)) {
         return core_fail("phys field: acceleration (%g, %g, %g) is not finite",
                          (double)d->acceleration.x, (double)d->acceleration.y,
                          (double)d->acceleration.z);
+    }
+    if (d->type == PHYS_FIELD_WIND && !phys_finite3(d->velocity)) {
+        return core_fail("phys field: velocity (%g, %g, %g) is not finite", (double)d->velocity.x,
+                         (double)d->velocity.y, (double)d->velocity.z);
     }
     if (d->type == PHYS_FIELD_POINT &&
         !(phys_finite3(d->center) && phys_finite(d->strength) && d->core > 0.0f)) {
@@ -37,6 +41,7 @@ static bool check_desc(const phys_field_desc *d) {
 static void keep(phys_field_desc *out, const phys_field_desc *d) {
     out->type = d->type;
     out->acceleration = d->acceleration;
+    out->velocity = d->velocity;
     out->center = d->center;
     out->strength = d->strength;
     out->core = d->core;
@@ -78,7 +83,7 @@ bool phys_field_alive(const phys_world *w, phys_field h) {
 }
 
 static core_vec3 pull(const phys_field_desc *f, core_vec3 at) {
-    if (f->type == PHYS_FIELD_UNIFORM) {
+    if (f->type != PHYS_FIELD_POINT) {
         return f->acceleration;
     }
     core_vec3 d = core_v3_sub(f->center, at);
@@ -87,22 +92,34 @@ static core_vec3 pull(const phys_field_desc *f, core_vec3 at) {
     return core_v3_scale(d, f->strength / cube);
 }
 
-core_vec3 phys_field_acceleration(const phys_world *w, core_vec3 at, uint32_t layer) {
+static bool acts(const phys_field_desc *f, core_vec3 at, uint32_t layer) {
+    if ((f->layers >> layer & 1u) == 0) {
+        return false;
+    }
+    if (!f->bounded) {
+        return true;
+    }
+    phys_geom g = phys_geom_make(f->shape, f->position, f->rotation, f->half, f->radius);
+    return phys_geom_contains(&g, at);
+}
+
+// Sum over the fields: of wind or of accelerations.
+static core_vec3 sum_fields(const phys_world *w, core_vec3 at, uint32_t layer, bool wind) {
     core_vec3 sum = {0, 0, 0};
     for (uint32_t i = 0; i < core_columns_count(&w->fields.set); i++) {
         const phys_field_desc *f = &w->fields.desc[i];
-        if ((f->layers >> layer & 1u) == 0) {
-            continue;
+        if ((f->type == PHYS_FIELD_WIND) == wind && acts(f, at, layer)) {
+            sum = core_v3_add(sum, wind ? f->velocity : pull(f, at));
         }
-        if (f->bounded) {
-            phys_geom g = phys_geom_make(f->shape, f->position, f->rotation, f->half, f->radius);
-            if (!phys_geom_contains(&g, at)) {
-                continue;
-            }
-        }
-        sum = core_v3_add(sum, pull(f, at));
     }
     return sum;
+}
+
+core_vec3 phys_field_acceleration(const phys_world *w, core_vec3 at, uint32_t layer) {
+    return sum_fields(w, at, layer, false);
+}
+core_vec3 phys_field_wind(const phys_world *w, core_vec3 at, uint32_t layer) {
+    return sum_fields(w, at, layer, true);
 }
 
 core_vec3 phys_field_pull(const phys_world *w, core_vec3 at, uint32_t row) {

@@ -74,6 +74,7 @@ void phys_wake_all(phys_world *w) {
         b->flags[i] &= (uint16_t) ~(PHYS_BODY_ASLEEP | PHYS_BODY_CREEPS);
         b->still[i] = 0.0f;
     }
+    phys_cloths_wake(w);
 }
 
 // A touch by something that moves wakes.

@@ -16,6 +16,7 @@ typedef core_handle phys_trigger;
 typedef core_handle phys_field;
 typedef core_handle phys_joint;
 typedef core_handle phys_mover;
+typedef core_handle phys_cloth;
 
 typedef enum phys_body_type { PHYS_DYNAMIC, PHYS_STATIC, PHYS_KINEMATIC } phys_body_type;
 typedef enum phys_shape_type {
@@ -186,10 +187,15 @@ typedef struct phys_event {
 const phys_event *phys_world_events(const phys_world *world, uint32_t *count);
 
 // Accelerations that act on dynamic bodies, everywhere or inside a region. Several fields add up.
-typedef enum phys_field_type { PHYS_FIELD_UNIFORM, PHYS_FIELD_POINT } phys_field_type;
+typedef enum phys_field_type {
+    PHYS_FIELD_UNIFORM,
+    PHYS_FIELD_POINT,
+    PHYS_FIELD_WIND // moves air, which drags cloth along; bodies do not feel it
+} phys_field_type;
 typedef struct phys_field_desc {
     phys_field_type type;
     core_vec3 acceleration; // uniform (m/s^2)
+    core_vec3 velocity;     // wind (m/s)
     core_vec3 center;       // point
     float strength;        // point: towards the centre, strength / distance^2 (m^3/s^2); < 0 repels
     float core;            // point: > 0; inside this distance the pull falls linearly to 0 (m)
@@ -341,6 +347,61 @@ typedef struct phys_mover_state {
     float turn;              // about +y by which the ground turned in the last step (rad)
 } phys_mover_state;
 bool phys_mover_read(const phys_world *world, phys_mover mover, phys_mover_state *out);
+
+// ---- ropes and cloth ----
+// A matrix of particles, columns x rows; one column is a rope. Neighbours along columns and rows
+// keep their distance, diagonals resist shear, the second neighbours bending. Small steps (Macklin
+// et al., "Small Steps in Physics Simulation", SCA 2019) of extended position-based dynamics, in
+// which every line of the matrix is solved exactly at once as a tridiagonal system; the setting
+// "cloth" = "iterate" solves edge by edge instead. Particles collide with all shapes (their own
+// cloth and other cloths excepted), push bodies and are held by them; fields and wind act on them.
+typedef struct phys_cloth_desc {
+    uint32_t columns, rows; // >= 1, at least 2 particles; at most 1 << 20
+    core_vec3 origin;       // of particle (0, 0), m
+    core_vec3 across;       // way from column 0 to the last: its length is the rest width
+    core_vec3 down;         // way from row 0 to the last
+    float mass;             // kg in all, > 0, default 1
+    float radius;           // of the particles: half the thickness (m), > 0, default 0.01
+    float stretch;          // compliance of edges (m/N), 0: none gives
+    float shear;            // compliance of diagonals (m/N), default 1e-3
+    float bend;             // stiffness against bending (N/m of shortening), 0: none
+    float friction;         // >= 0, default 0.5
+    float damping;          // 1/s, >= 0, default 0.1
+    float drag;             // of the air across the face, >= 0, default 1; 0: no wind
+    float gravity_scale;    // default 1
+    float tear_force;       // N along an edge, 0: never
+    uint32_t substeps;      // default 8, at most 64
+    uint32_t layer;         // 0..31: collides by the rules of bodies
+    uint64_t user;          // the caller's own, never read
+    uint32_t cookie;
+} phys_cloth_desc;
+phys_cloth_desc phys_cloth_desc_default(void);
+// Null + core_fail for bad input.
+phys_cloth phys_cloth_create(phys_world *world, const phys_cloth_desc *desc);
+// False + core_fail for stale handles and particles that do not exist, as below.
+bool phys_cloth_destroy(phys_world *world, phys_cloth cloth);
+bool phys_cloth_alive(const phys_world *world, phys_cloth cloth);
+uint32_t phys_cloth_count(const phys_world *world);
+uint64_t phys_cloth_user(const phys_world *world, phys_cloth cloth);
+// Holds a particle to a body at its present place, or, with a null body, to a point of the world,
+// to which it goes within the next step. A dynamic body feels the pull. Again: replaces.
+bool phys_cloth_hold(phys_world *world, phys_cloth cloth, uint32_t column, uint32_t row,
+                     phys_body body, core_vec3 at);
+bool phys_cloth_release(phys_world *world, phys_cloth cloth, uint32_t column, uint32_t row);
+bool phys_cloth_push(phys_world *world, phys_cloth cloth, uint32_t column, uint32_t row,
+                     core_vec3 impulse); // N s
+// What is there: valid until the next create, destroy or step. Particle (c, r) is at c + r*columns.
+enum { PHYS_CLOTH_TORN_ACROSS = 1, PHYS_CLOTH_TORN_DOWN = 2 };
+typedef struct phys_cloth_view {
+    uint32_t columns, rows, count;
+    const float *x, *y, *z, *vx, *vy, *vz;
+    const uint8_t *torn; // bits: the edge to (c + 1, r), to (c, r + 1)
+    uint32_t torn_count; // edges
+    bool asleep;
+} phys_cloth_view;
+bool phys_cloth_read(const phys_world *world, phys_cloth cloth, phys_cloth_view *out);
+// How far whole edges are from their rest length, relative: mean of the magnitudes, and the most.
+bool phys_cloth_stretch(const phys_world *world, phys_cloth cloth, double *mean, double *most);
 
 // ---- snapshot ----
 // The whole state: bodies, contacts with their impulses, triggers, fields, rules. A world restored

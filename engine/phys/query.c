@@ -314,3 +314,22 @@ uint32_t phys_world_touch(phys_world *w, const phys_shape_desc *shape, core_vec3
     core_arena_rewind(&w->scratch, mark);
     return count;
 }
+
+uint32_t phys_query_shapes(phys_world *w, const phys_box *box, uint32_t *out, uint32_t capacity) {
+    size_t mark = core_arena_mark(&w->scratch);
+    candidates c = find_candidates(w, box);
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < c.count; k++) {
+        phys_geom g = phys_shape_geom(w, c.row[k]);
+        if (boxes_meet(box, phys_geom_bounds(&g))) {
+            c.row[count++] = c.row[k];
+        }
+    }
+    c.count = count;
+    sort_candidates(w, &c);
+    for (uint32_t k = 0; k < CORE_MIN(count, capacity); k++) {
+        out[k] = c.row[k];
+    }
+    core_arena_rewind(&w->scratch, mark);
+    return count;
+}

@@ -88,6 +88,9 @@ static bool make_storage(phys_world *w, uint32_t max_bodies) {
            phys_visits_init(&w->visits, "phys.visits", 1u << 20) &&
            phys_fields_init(&w->fields, "phys.fields", 1u << 12) &&
            phys_movers_init(&w->movers, "phys.movers", 1u << 16) &&
+           phys_cloths_init(&w->cloths, "phys.cloths", 1u << 16) &&
+           phys_particles_init(&w->particles, "phys.particles", PHYS_CLOTH_PARTICLES) &&
+           phys_holds_init(&w->holds, "phys.holds", PHYS_CLOTH_PARTICLES) &&
            core_arena_init(&w->scratch, "phys.scratch", (size_t)16 << 30);
 }
 
@@ -136,6 +139,9 @@ void phys_world_destroy(phys_world *w) {
     core_columns_release(&w->visits.set);
     core_columns_release(&w->fields.set);
     core_columns_release(&w->movers.set);
+    core_columns_release(&w->cloths.set);
+    core_columns_release(&w->particles.set);
+    core_columns_release(&w->holds.set);
     core_arena_release(&w->scratch);
     phys_pairs_release(w);
     phys_hulls_release(w);
@@ -169,8 +175,17 @@ static bool set_int(const char *name, const char *value, int lo, int hi, int *ou
 }
 
 bool phys_world_set(phys_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"broad", "integrator", "iterations",
-                                        "sleep", "solver",     "substeps"};
+    static const char *const names[] = {"broad", "cloth",  "integrator", "iterations",
+                                        "sleep", "solver", "substeps"};
+    if (strcmp(name, "cloth") == 0) {
+        bool iterates = strcmp(value, "iterate") == 0;
+        if (!iterates && strcmp(value, "direct") != 0) {
+            return core_fail("phys setting cloth: '%s', expected direct or iterate", value);
+        }
+        w->cloth_iterates = iterates;
+        phys_cloths_wake(w);
+        return true;
+    }
     if (strcmp(name, "broad") == 0) {
         return pick_broad(w, value);
     }
@@ -301,6 +316,7 @@ bool phys_world_step(phys_world *w, float dt) {
     if (all_at_rest(w)) {
         w->islands = 0;
         w->time += (double)dt;
+        phys_cloths_update(w, dt, false);
         phys_movers_update(w, dt, true);
         phys_events_triggers(w);
         core_stage_end(w->metrics, CORE_STAGE_PHYS);
@@ -320,6 +336,8 @@ bool phys_world_step(phys_world *w, float dt) {
     phys_islands_update(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_ISLANDS);
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_SOLVE);
+    phys_cloths_update(w, dt, w->shapes_changed);
+    w->shapes_changed = false;
     const core_quat *rotations = phys_continuous_begin(w);
     w->solver->step(w, dt);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_SOLVE);
@@ -337,8 +355,9 @@ bool phys_world_step(phys_world *w, float dt) {
 
 void phys_world_sets(phys_world *w, core_columns *set[PHYS_SETS]) {
     core_columns *all[PHYS_SETS] = {
-        &w->bodies.set,   &w->shapes.set, &w->balls.set,  &w->contacts.set, &w->joints.set,
-        &w->triggers.set, &w->visits.set, &w->fields.set, &w->movers.set,   &w->mesh_pairs.set};
+        &w->bodies.set,   &w->shapes.set,    &w->balls.set,  &w->contacts.set, &w->joints.set,
+        &w->triggers.set, &w->visits.set,    &w->fields.set, &w->movers.set,   &w->mesh_pairs.set,
+        &w->cloths.set,   &w->particles.set, &w->holds.set};
     memcpy(set, all, sizeof all);
 }
 
@@ -358,6 +377,8 @@ size_t phys_world_bytes(const phys_world *w) {
            core_columns_bytes(&w->joints.set) + w->joint_pairs.capacity * sizeof(uint64_t) +
            core_columns_bytes(&w->triggers.set) + core_columns_bytes(&w->visits.set) +
            core_columns_bytes(&w->fields.set) + core_columns_bytes(&w->movers.set) +
+           core_columns_bytes(&w->cloths.set) + core_columns_bytes(&w->particles.set) +
+           core_columns_bytes(&w->holds.set) +
            (w->events.capacity + w->pending.capacity) * sizeof(phys_event) + w->scratch.committed +
            w->map.capacity * (sizeof(uint64_t) + sizeof(uint32_t)) +
            w->pairs.capacity * sizeof(phys_pair) + w->order_capacity * sizeof(uint32_t) +

@@ -2,6 +2,7 @@
 #ifndef PHYS_WORLD_H
 #define PHYS_WORLD_H
 
+#include "phys/cloth.h"
 #include "phys/geom.h"
 #include "phys/joint.h"
 #include "phys/motion.h"
@@ -305,13 +306,18 @@ struct phys_world {
     phys_visits visits;
     phys_fields fields;
     phys_movers movers;
+    phys_cloths cloths;
+    phys_particles particles;
+    phys_holds holds;
+    bool cloth_iterates;             // edges one by one instead of whole lines
     uint32_t rule[32];               // bit b of rule[a]: layers a and b collide
     phys_event_list events, pending; // of the last step; of removals since
     phys_pair_map map;
     phys_pair_list pairs;
     phys_tree fixed_tree, moving_tree;
-    bool trees_stale; // rows changed
-    bool edited;      // bodies were made, moved or removed since the last step
+    bool trees_stale;    // rows changed
+    bool shapes_changed; // bodies came or went since the last step
+    bool edited;         // bodies were made, moved or removed since the last step
     phys_static_log statics;
     bool any_moved;   // some shape left its bounds in this step
     bool rows_stale;  // contacts' body rows are to be looked up again
@@ -384,7 +390,7 @@ static inline core_vec3 phys_lock_turn(uint8_t locks, core_vec3 w) {
 }
 
 // world.c: the sets of state, in the order of hashes and snapshots.
-enum { PHYS_SETS = 10 };
+enum { PHYS_SETS = 13 };
 void phys_world_sets(phys_world *world, core_columns *set[PHYS_SETS]);
 
 // shape.c
@@ -422,6 +428,10 @@ void phys_tree_update(phys_world *world);
 uint32_t phys_tree_query(const phys_world *world, const phys_tree *tree, const phys_box *box,
                          uint32_t *out, uint32_t capacity);
 void phys_trees_release(phys_world *world);
+
+// query.c: rows of shapes whose bounds meet the box, by body; returns how many there are.
+uint32_t phys_query_shapes(phys_world *world, const phys_box *box, uint32_t *out,
+                           uint32_t capacity);
 
 // pairs.c
 void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b);
@@ -513,6 +523,7 @@ void phys_events_contact_end(phys_world *world, phys_event_list *list, uint32_t 
 core_vec3 phys_field_acceleration(const phys_world *world, core_vec3 at, uint32_t layer);
 // The same for the body in `row`, timed now and then.
 core_vec3 phys_field_pull(const phys_world *world, core_vec3 at, uint32_t row);
+core_vec3 phys_field_wind(const phys_world *world, core_vec3 at, uint32_t layer); // m/s
 bool phys_geom_contains(const phys_geom *geom, core_vec3 point);
 phys_geom phys_geom_make(phys_shape_type type, core_vec3 position, core_quat rotation,
                          core_vec3 half, float radius);
