@@ -35,6 +35,7 @@ SANITIZERS = {
     "LSAN_OPTIONS": "print_suppressions=0:suppressions=" + str(ROOT / "tests/lsan.supp"),
     "TSAN_OPTIONS": "halt_on_error=1:second_deadlock_stack=1",
 }
+PLAYER = {"CORSAC_SAVE": str(ROOT / "build/player")}  # scenes that save do so here
 INSTRUCTION_SETS = {"sse2": "sse2", "avx2": "avx2", "avx512": "avx512f"}
 window_lock = threading.Lock()  # xvfb-run -a picks a display number without locking it
 
@@ -55,7 +56,7 @@ def run_program(command, limit, env=None):
     """Exit status (None when it ran out of time) and everything it wrote."""
     try:
         done = subprocess.run(
-            [str(word) for word in command], cwd=ROOT, env={**os.environ, **SANITIZERS, **(env or {})},
+            [str(word) for word in command], cwd=ROOT, env={**os.environ, **SANITIZERS, **PLAYER, **(env or {})},
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=limit)
         return done.returncode, done.stdout.decode("utf-8", "replace")
     except subprocess.TimeoutExpired as late:

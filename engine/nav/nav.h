@@ -291,6 +291,9 @@ nav_mesh_query nav_mesh_query_default(void);
 // the length on the ground plane in m times the cost of areas, and that of links.
 bool nav_mesh_find_way(nav_world *world, const nav_mesh_query *query, nav_result *result,
                        core_vec3 *point, uint32_t *link, uint32_t capacity);
+// The first `capacity` points and links of the last way across a surface: for callers who want to
+// know the length first. Valid until the next search or step.
+void nav_mesh_last_way(const nav_world *world, core_vec3 *point, uint32_t *link, uint32_t capacity);
 // With the default query.
 bool nav_mesh_search(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
                      nav_result *result, core_vec3 *out, uint32_t capacity);

@@ -219,18 +219,22 @@ bool nav_mesh_plan(nav_world *w, const nav_mesh_query *q, double clearance, nav_
     return true;
 }
 
-bool nav_mesh_find_way(nav_world *w, const nav_mesh_query *query, nav_result *result,
-                       core_vec3 *point, uint32_t *link, uint32_t capacity) {
-    if (!nav_mesh_plan(w, query, 0.0, result)) {
-        return false;
-    }
-    size_t count = CORE_MIN(result->count, capacity);
+void nav_mesh_last_way(const nav_world *w, core_vec3 *point, uint32_t *link, uint32_t capacity) {
+    size_t count = CORE_MIN(w->way.count, capacity);
     if (point && count) {
         memcpy(point, w->way.point, count * sizeof *point);
     }
     if (link && count) {
         memcpy(link, w->way.link, count * sizeof *link);
     }
+}
+
+bool nav_mesh_find_way(nav_world *w, const nav_mesh_query *query, nav_result *result,
+                       core_vec3 *point, uint32_t *link, uint32_t capacity) {
+    if (!nav_mesh_plan(w, query, 0.0, result)) {
+        return false;
+    }
+    nav_mesh_last_way(w, point, link, capacity);
     return true;
 }
 

@@ -61,6 +61,7 @@ void scene_destroy(scene *s) {
     }
     scene_models_destroy(s);
     anim_world_destroy(s->anim);
+    scene_surfaces_release(s);
     nav_world_destroy(s->nav);
     scene_audio_destroy(s);
     if (s->phys) {

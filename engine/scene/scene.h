@@ -137,9 +137,23 @@ anim_instance scene_entity_anim(const scene *s, scene_entity e); // null: not an
 // goes and looks along its heading; a body is given the agent's velocity on the ground, and the
 // agent is where the body is. offset: height of the entity's origin above the agent's point, m.
 bool scene_set_agent(scene *s, scene_entity e, nav_agent agent, float offset);
+// The agent is where the mover is (its centre `offset` m above the agent's point), and says where
+// the mover walks.
+bool scene_lead_mover(scene *s, nav_agent agent, phys_mover mover, float offset);
 nav_agent scene_entity_agent(const scene *s, scene_entity e); // null: none
 scene_entity scene_entity_of_agent(const scene *s, nav_agent agent);
 scene_entity scene_entity_of_anim(const scene *s, anim_instance instance);
+// A walkable surface (nav.h) made from the bodies of the physics world. Bodies that are made, moved
+// or destroyed later change it from the next step on.
+typedef struct scene_surface_desc {
+    nav_mesh_desc nav; // default: in tiles of 64 cells; bounds equal: those of the bodies
+    uint32_t layers;   // bit per body layer that counts; 0: all
+    bool kinematic;    // kinematic bodies count where they have rested for six steps
+    float tolerance;   // m by which round shapes may be cut flat, default 0.02
+    uint32_t cookie;
+} scene_surface_desc;
+scene_surface_desc scene_surface_desc_default(void);
+nav_mesh scene_surface_create(scene *s, const scene_surface_desc *desc); // null + core_fail
 // Gives the entity an animation instance (destroyed with it). Its meshes follow the palette; root
 // motion moves the entity, or sets the horizontal velocity of its body.
 bool scene_set_anim(scene *s, scene_entity e, anim_instance instance);

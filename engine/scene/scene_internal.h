@@ -82,6 +82,12 @@ typedef struct scene_kept_setting { // given before its room was made
 #define SCENE_TAG_NAME     32
 #define SCENE_LAYER_NAME   32 // bytes with the terminating zero
 
+typedef struct scene_led { // a mover that an agent leads
+    nav_agent agent;
+    phys_mover mover;
+    float offset; // of its centre above the agent, m
+} scene_led;
+typedef struct scene_surface scene_surface;
 typedef struct scene_models scene_models;
 typedef struct scene_sounds scene_sounds;
 
@@ -101,6 +107,13 @@ struct scene {
     anim_world *anim;
     nav_world *nav;
     audio_world *audio;
+    scene_led *led; // [led_count]
+    uint32_t led_count;
+    scene_surface *surface; // [surface_count] walkable surfaces made from bodies
+    uint32_t surface_count;
+    core_vec3 *soup_corner; // [3 * soup_room] triangles of one body
+    uint32_t *soup_index;
+    uint32_t soup_room;
     scene_sounds *sounds;  // made with the first one
     scene_entity listener; // null: the camera, unless listener_placed
     bool listener_placed;
@@ -136,6 +149,9 @@ void scene_anim_pose(scene *s);   // palettes, after physics
 void scene_anim_sync(scene *s);   // palettes into gfx
 void scene_anim_leave(scene *s, uint32_t row);
 bool scene_add_model(scene *s, uint32_t row, const scene_spawn_desc *d);
+// scene_surface.c
+void scene_surfaces_keep_up(scene *s);
+void scene_surfaces_release(scene *s);
 // scene_nav.c
 void scene_nav_step(scene *s); // agents, and the entities they lead; before physics
 void scene_nav_leave(scene *s, uint32_t row);

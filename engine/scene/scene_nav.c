@@ -61,6 +61,54 @@ bool scene_set_agent(scene *s, scene_entity e, nav_agent agent, float offset) {
     return nav_agent_set_position(s->nav, agent, feet(s, row));
 }
 
+bool scene_lead_mover(scene *s, nav_agent agent, phys_mover mover, float offset) {
+    if (!s->nav || !nav_agent_alive(s->nav, agent)) {
+        return core_fail("scene_lead_mover: the agent does not exist");
+    }
+    if (!s->phys || !phys_mover_alive(s->phys, mover)) {
+        return core_fail("scene_lead_mover: the mover does not exist");
+    }
+    if (!(offset - offset == 0.0f)) {
+        return core_fail("scene_lead_mover: offset is %g m, expected a finite number",
+                         (double)offset);
+    }
+    s->led =
+        core_realloc(s->led, s->led_count * sizeof *s->led, (s->led_count + 1) * sizeof *s->led);
+    s->led[s->led_count++] = (scene_led){agent, mover, offset};
+    return nav_agent_set_driven(s->nav, agent, true);
+}
+
+static bool led_alive(const scene *s, const scene_led *l) {
+    return s->phys && nav_agent_alive(s->nav, l->agent) && phys_mover_alive(s->phys, l->mover);
+}
+
+// Agents are where their movers are.
+static void place_led(scene *s) {
+    for (uint32_t i = 0; i < s->led_count;) {
+        scene_led *l = &s->led[i];
+        if (!led_alive(s, l)) {
+            s->led[i] = s->led[--s->led_count];
+            continue;
+        }
+        phys_mover_state m;
+        phys_mover_read(s->phys, l->mover, &m);
+        m.position.y -= l->offset;
+        nav_agent_set_position(s->nav, l->agent, m.position);
+        i++;
+    }
+}
+
+static void lead_movers(scene *s) {
+    for (uint32_t i = 0; i < s->led_count; i++) {
+        core_vec3 v = {0, 0, 0};
+        scene_led *l = &s->led[i];
+        if (nav_agent_status(s->nav, l->agent) != NAV_AGENT_IDLE) {
+            nav_agent_velocity(s->nav, l->agent, &v);
+            phys_mover_walk(s->phys, l->mover, core_v3(v.x, 0.0f, v.z));
+        }
+    }
+}
+
 void scene_nav_leave(scene *s, uint32_t row) {
     if (s->nav && nav_agent_alive(s->nav, s->entity.agent[row])) {
         nav_agent_destroy(s->nav, s->entity.agent[row]);
@@ -105,7 +153,9 @@ void scene_nav_step(scene *s) {
     if (!s->nav) {
         return;
     }
+    scene_surfaces_keep_up(s);
     place_agents(s);
+    place_led(s);
     nav_world_step(s->nav, s->dt);
     for (uint32_t i = 0; i < nav_agent_count(s->nav); i++) {
         nav_agent agent = nav_agent_at(s->nav, i);
@@ -114,4 +164,5 @@ void scene_nav_step(scene *s) {
             lead(s, row, agent);
         }
     }
+    lead_movers(s);
 }

@@ -1,5 +1,6 @@
 // Agents of corsac.nav.
 #include "script/bind_body.h"
+#include "script/bind_mover.h"
 #include "script/bind_nav.h"
 #include "script/internal.h"
 
@@ -19,9 +20,9 @@ bool bind_agent_alive(script *s, core_handle h) {
 
 int bind_agent_new(script *s, lua_State *L, void *args) {
     const bind_agent_options *o = &((bind_agent_call *)args)->options;
-    if (o->has_entity == o->has_position) {
-        bind_error(L, "corsac.nav.newAgent: give either an entity (which says where it is) or a "
-                      "position");
+    if (o->has_entity + o->has_position + o->has_mover != 1) {
+        bind_error(L, "corsac.nav.newAgent: give an entity or a mover (which say where it is), or "
+                      "a position");
     }
     nav_agent_desc desc = nav_agent_desc_default();
     desc.position = o->position;
@@ -33,7 +34,8 @@ int bind_agent_new(script *s, lua_State *L, void *args) {
     desc.heading = o->heading;
     nav_agent agent = nav_agent_create(world_of(s), &desc);
     if (core_handle_is_null(agent) ||
-        (o->has_entity && !scene_set_agent(s->scene, o->entity, agent, o->offset))) {
+        (o->has_entity && !scene_set_agent(s->scene, o->entity, agent, o->offset)) ||
+        (o->has_mover && !scene_lead_mover(s->scene, agent, o->mover, o->offset))) {
         bind_fail(L);
     }
     bind_push(s, L, &bind_agent_type, agent);
@@ -98,6 +100,14 @@ static int set_max_speed(script *s, lua_State *L, void *args) {
     const speed_args *a = args;
     return done(L, nav_agent_set_max_speed(world_of(s), a->self, a->speed));
 }
+static int get_link(script *s, lua_State *L, void *args) {
+    uint32_t link = nav_agent_link(world_of(s), *(core_handle *)args);
+    if (link == NAV_NO_LINK) {
+        return 0;
+    }
+    lua_pushnumber(L, link);
+    return 1;
+}
 static int get_entity(script *s, lua_State *L, void *args) {
     bind_push(s, L, &bind_entity_type, scene_entity_of_agent(s->scene, *(core_handle *)args));
     return 1;
@@ -120,11 +130,14 @@ const bind_arg bind_agent_fields[] = {
      "whom it leads: without a body it goes where the agent goes, a body is pushed along",
      .optional = true, .def_text = "nil", .type = &bind_entity_type,
      BIND_GIVEN(bind_agent_options, has_entity)},
+    {"mover", BIND_OBJECT, BIND_AT(bind_agent_options, mover), "whose walk it decides",
+     .optional = true, .def_text = "nil", .type = &bind_mover_type,
+     BIND_GIVEN(bind_agent_options, has_mover)},
     {"position", BIND_VEC3, BIND_AT(bind_agent_options, position),
-     "where it stands, without an entity", "m", .optional = true, .def_text = "the entity's",
+     "where it stands, without entity or mover", "m", .optional = true, .def_text = "the entity's",
      BIND_GIVEN(bind_agent_options, has_position)},
-    OPTION("offset", offset, "height of the entity's origin above its feet", "m", BIND_ANY_NUMBER,
-           .optional = true),
+    OPTION("offset", offset, "height of the origin of entity or mover above its feet", "m",
+           BIND_ANY_NUMBER, .optional = true),
     OPTION("radius", radius, "room it needs", "m", BIND_POSITIVE, .optional = true, .def = 0.3),
     OPTION("maxSpeed", max_speed, "", "m/s", BIND_POSITIVE, .optional = true, .def = 1.5),
     OPTION("acceleration", acceleration, "braking too", "m/s^2", BIND_POSITIVE, .optional = true,
@@ -161,6 +174,8 @@ const bind_fn bind_agent_methods[] = {
     {"setMaxSpeed", "How fast it may go.",
      BIND_ARGS({"speed", BIND_FLOAT, BIND_AT(speed_args, speed), "", "m/s", BIND_POSITIVE}), NULL,
      sizeof(speed_args), BIND_SIM, .run = set_max_speed},
+    {"getLink", "Id of the surface's link on which it is now, nothing on the ground.", NULL,
+     BIND_RETURNS({"link", "integer?", NULL}), SELF, BIND_RUNNING, .run = get_link},
     {"getEntity", "Whom it leads, or nil.", NULL, BIND_RETURNS({"entity", "corsac.Entity?", NULL}),
      SELF, BIND_RUNNING, .run = get_entity},
     {"destroy", "Removes it; its entity stays.", NULL, NULL, SELF, BIND_SIM, .run = destroy},

@@ -21,24 +21,6 @@ static int done(lua_State *L, bool good) {
     return 0;
 }
 
-// Layers by name in an array; 0 when there is none.
-static uint32_t layer_bits(script *s, lua_State *L, int list) {
-    uint32_t bits = 0;
-    for (int i = 1; list; i++) {
-        lua_rawgeti(L, list, i);
-        if (lua_isnil(L, -1)) {
-            lua_pop(L, 1);
-            break;
-        }
-        if (lua_type(L, -1) != LUA_TSTRING) {
-            bind_error(L, "corsac.phys.newMover: layers must be names in an array: {\"default\"}");
-        }
-        bits |= 1u << bind_layer(s, L, lua_tostring(L, -1));
-        lua_pop(L, 1);
-    }
-    return bits;
-}
-
 // Lua gives the whole height.
 static float segment_half(lua_State *L, float height, float radius) {
     if (!(height > 2.0f * radius)) {
@@ -59,7 +41,7 @@ static int new_mover(script *s, lua_State *L, void *args) {
     d.push_force = o->push_force;
     d.mass = o->mass;
     d.gravity_scale = o->gravity_scale;
-    d.layers = layer_bits(s, L, o->layers);
+    d.layers = bind_layer_bits(s, L, o->layers);
     phys_mover mover = phys_mover_create(scene_phys(s->scene), &d);
     if (core_handle_is_null(mover)) {
         bind_fail(L);

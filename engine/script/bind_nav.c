@@ -1,6 +1,6 @@
 // corsac.nav: waypoint graphs and paths; who walks is an Agent (bind_agent.c).
-#include "script/bind_nav.h"
 #include "script/bind_body.h"
+#include "script/bind_surface.h"
 #include "script/internal.h"
 
 static nav_world *world_of(script *s) { return scene_nav(s->scene); }
@@ -419,6 +419,11 @@ static const bind_fn functions[] = {
                 .fields = bind_surface_fields}),
      BIND_RETURNS({"surface", "corsac.Surface", NULL}), sizeof(bind_surface_call), BIND_SIM,
      .run = bind_surface_new},
+    {"loadSurface", "Reads a surface that Surface:save wrote.",
+     BIND_ARGS({"path", BIND_STRING, BIND_AT(bind_load_call, path),
+                "a .cnav file of the scene or of the player's folder"}),
+     BIND_RETURNS({"surface", "corsac.Surface", NULL}), sizeof(bind_load_call), BIND_SIM,
+     .run = bind_surface_load},
     {0}};
 
 static const bind_module modules[] = {

@@ -9,8 +9,8 @@ extern const bind_type bind_graph_type, bind_path_type, bind_agent_type, bind_su
 typedef struct bind_agent_options {
     core_vec3 position;
     float radius, max_speed, acceleration, turn_rate, arrive, heading, offset;
-    core_handle entity;
-    bool has_position, has_entity;
+    core_handle entity, mover;
+    bool has_position, has_entity, has_mover;
 } bind_agent_options;
 typedef struct bind_agent_call {
     bind_agent_options options;
@@ -18,17 +18,6 @@ typedef struct bind_agent_call {
 extern const bind_arg bind_agent_fields[];
 extern const bind_fn bind_agent_methods[];
 bind_handler bind_agent_new;
-// In bind_surface.c: newSurface's handler and arguments.
-typedef struct bind_surface_options {
-    bind_numbers vertices, triangles;
-    bind_list boxes;
-    float cell_size, radius, height, climb, slope;
-} bind_surface_options;
-typedef struct bind_surface_call {
-    bind_surface_options options;
-} bind_surface_call;
-extern const bind_arg bind_surface_fields[];
-bind_handler bind_surface_new;
 bool bind_agent_alive(script *s, core_handle h);
 
 // Pushes a table {x, y, z}.

@@ -56,6 +56,23 @@ static uint32_t layer_mask(script *s, lua_State *L, const char *layer) {
     return layer ? 1u << bind_layer(s, L, layer) : 0;
 }
 
+uint32_t bind_layer_bits(script *s, lua_State *L, int list) {
+    uint32_t bits = 0;
+    for (int i = 1; list; i++) {
+        lua_rawgeti(L, list, i);
+        if (lua_isnil(L, -1)) {
+            lua_pop(L, 1);
+            break;
+        }
+        if (lua_type(L, -1) != LUA_TSTRING) {
+            bind_error(L, "layers must be names in an array: {\"default\"}");
+        }
+        bits |= 1u << bind_layer(s, L, lua_tostring(L, -1));
+        lua_pop(L, 1);
+    }
+    return bits;
+}
+
 // ---- triggers ----
 
 typedef struct trigger_options {

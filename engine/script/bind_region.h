@@ -10,5 +10,7 @@ extern const bind_type bind_trigger_type, bind_field_type;
 
 // Number of a layer by name, made when it is new; raises a Lua error when there are 32.
 uint32_t bind_layer(script *s, lua_State *L, const char *name);
+// Bits of layers named in the array at a stack index (0: none); 0 when there is none.
+uint32_t bind_layer_bits(script *s, lua_State *L, int list);
 
 #endif

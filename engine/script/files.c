@@ -31,7 +31,7 @@ static bool make_folders(char *path) {
 
 // $CORSAC_SAVE, or $XDG_DATA_HOME/corsac/GAME, or ~/.local/share/corsac/GAME; mounted on first use
 // in a file tree of its own, so that no scene file can be overwritten.
-static core_vfs *player_files(script *s) {
+core_vfs *script_player_files(script *s) {
     if (s->save) {
         return s->save;
     }
@@ -79,7 +79,7 @@ int script_save_write(lua_State *L) {
     char *text = script_json_write(L, 2, "corsac.save.write: data");
     bool good = s->host.replays && s->host.replays(s->host.ctx);
     if (!good) {
-        core_vfs *files = player_files(s);
+        core_vfs *files = script_player_files(s);
         good = files && core_vfs_write(files, lua_tostring(L, -1), text, strlen(text));
     }
     core_free(text);
@@ -91,7 +91,7 @@ int script_save_write(lua_State *L) {
 
 // The file's text; NULL when there is none. Raises an error when it cannot be read.
 static char *read_player_file(script *s, lua_State *L, const char *name, size_t *size) {
-    core_vfs *files = player_files(s);
+    core_vfs *files = script_player_files(s);
     if (!files) {
         bind_fail(L);
     }

@@ -791,6 +791,10 @@ function Agent:getHeading() end
 ---@param speed number
 function Agent:setMaxSpeed(speed) end
 
+---Id of the surface's link on which it is now, nothing on the ground.
+---@return integer? link
+function Agent:getLink() end
+
 ---Whom it leads, or nil.
 ---@return corsac.Entity? entity
 function Agent:getEntity() end
@@ -812,12 +816,86 @@ local Surface = {}
 ---@return number? z
 function Surface:nearest(x, y, z, limit) end
 
----Shortest way: points {x, y, z} (nil without one) and its length.
+---@class Surface.findPath.options
+---@field costs? number[] of a metre in area 0, 1, 2 ...; 0: 1; below 0: not walked
+---@field partial? boolean without a way: to the reachable point nearest to the goal
+
+---Shortest way: points {x, y, z, link = id of the link to the next} (nil without one), its cost, and the status.
 ---@param start number[] where it begins
 ---@param goal number[] where it ends
+---@param options? Surface.findPath.options how to search
 ---@return number[][]? points
 ---@return number length
-function Surface:findPath(start, goal) end
+---@return string status
+function Surface:findPath(start, goal, options) end
+
+---@class Surface.put.ground.boxes
+---@field position? number[] its middle, m
+---@field size number|number[] lengths of its edges, m
+---@field area? integer 0 to 31, or 255 where nobody walks
+
+---@class Surface.put.ground
+---@field vertices? number[] x y z after x y z, m
+---@field triangles? number[] three vertices each, counted from 1, counter-clockwise seen from above
+---@field areas? number[] of each triangle: 0 to 31, or 255 where nobody walks
+---@field boxes? Surface.put.ground.boxes[] upright boxes
+
+---Puts triangles and boxes in the place of those under a key.
+---@param key integer a number of its own; 0 is what it was made from
+---@param ground Surface.put.ground
+function Surface:put(key, ground) end
+
+---Removes what is under a key.
+---@param key integer a number of its own; 0 is what it was made from
+function Surface:remove(key) end
+
+---@class Surface.mark.box
+---@field position? number[] its middle, m
+---@field size number|number[] lengths of its edges, m
+---@field area? integer 0 to 31, or 255 where nobody walks
+
+---Gives the ground inside a box an area.
+---@param key integer a number of its own; 0 is what it was made from
+---@param box Surface.mark.box
+function Surface:mark(key, box) end
+
+---Makes all tiles anew that wait for it; steps do so a few at a time.
+function Surface:update() end
+
+---How many tiles wait to be made anew.
+---@return integer tiles
+function Surface:getWaiting() end
+
+---@class Surface.addLink.options
+---@field from number[] on the surface, m
+---@field to number[] on the surface, m
+---@field cost? number as metres of ground; 0: its length, m
+---@field bothWays? boolean
+---@field closed? boolean not walked until it is opened
+---@field kind? "jump"|"ladder"|"door" for whoever moves the agent
+
+---Adds a way that leaves the surface: a jump, a ladder, a door. Returns its id.
+---@param options Surface.addLink.options the link
+---@return integer link
+function Surface:addLink(options) end
+
+---Removes a link.
+---@param link integer which
+function Surface:removeLink(link) end
+
+---Opens or closes a link.
+---@param link integer which
+---@param open boolean may be walked
+function Surface:setLinkOpen(link, open) end
+
+---A link as a table {from, to, cost, bothWays, open, kind}.
+---@param link integer which
+---@return table link
+function Surface:getLink(link) end
+
+---Writes it to a file (.cnav), pieces and links included.
+---@param path string in the player's folder, where corsac.save writes
+function Surface:save(path) end
 
 ---The same as a Path.
 ---@param start number[] where it begins
@@ -2095,8 +2173,9 @@ function corsac.nav.newPath(graph, start, goal) end
 
 ---@class corsac.nav.newAgent.options
 ---@field entity? corsac.Entity whom it leads: without a body it goes where the agent goes, a body is pushed along
----@field position? number[] where it stands, without an entity, m
----@field offset? number height of the entity's origin above its feet, m
+---@field mover? corsac.Mover whose walk it decides
+---@field position? number[] where it stands, without entity or mover, m
+---@field offset? number height of the origin of entity or mover above its feet, m
 ---@field radius? number room it needs, m
 ---@field maxSpeed? number m/s
 ---@field acceleration? number braking too, m/s^2
@@ -2112,21 +2191,37 @@ function corsac.nav.newAgent(options) end
 ---@class corsac.nav.newSurface.options.boxes
 ---@field position? number[] its middle, m
 ---@field size number|number[] lengths of its edges, m
+---@field area? integer 0 to 31, or 255 where nobody walks
 
 ---@class corsac.nav.newSurface.options
+---@field from? "geometry"|"physics" physics: static bodies, also those made, moved or destroyed later
 ---@field vertices? number[] x y z after x y z, m
 ---@field triangles? number[] three vertices each, counted from 1, counter-clockwise seen from above
+---@field areas? number[] of each triangle: 0 to 31, or 255 where nobody walks
 ---@field boxes? corsac.nav.newSurface.options.boxes[] upright boxes
 ---@field cellSize? number how exact it is sideways, m
+---@field maxError? number in place of cellSize: ground further than radius + maxError from walls is covered, m
 ---@field radius? number of the agent; kept clear of walls and ledges, m
 ---@field height? number of the agent, m
 ---@field climb? number highest step, m
 ---@field slope? number steepest ground, rad
+---@field tileCells? integer side of a tile in cells: a change makes only its tiles anew; 0: one that cannot change
+---@field tilesPerStep? integer made anew in a step at most
+---@field low? number[] with tiles: corner of what it may ever cover, m
+---@field high? number[] the opposite corner, m
+---@field layers? table from physics: names of collision layers that count
+---@field kinematic? boolean from physics: kinematic bodies count where they have rested for six steps
+---@field tolerance? number from physics: by which round shapes may be cut flat, m
 
 ---Finds the ground on which an agent can stand and step, from triangles and boxes.
 ---@param options corsac.nav.newSurface.options world and agent
 ---@return corsac.Surface surface
 function corsac.nav.newSurface(options) end
+
+---Reads a surface that Surface:save wrote.
+---@param path string a .cnav file of the scene or of the player's folder
+---@return corsac.Surface surface
+function corsac.nav.loadSurface(path) end
 
 ---Sounds in space: sources, groups, a listener.
 corsac.audio = {}
