@@ -28,14 +28,14 @@
 typedef struct hold {
     uint32_t joints, count, anchors; // count: those on this body, `joints` those it comes first in
     float pull;
-    bool other;
+    bool other, bars; // some joint is no plain ball joint; is no rod
 } hold;
 
 typedef struct island {
     core_vec3 lo, hi;
     float ratio, rate; // rate: squared, 1/s^2
     uint32_t count, joints, anchors;
-    bool restless, touched, branched;
+    bool restless, touched, branched, bars;
 } island;
 
 static uint32_t find_root(uint32_t *parent, uint32_t i) {
@@ -140,11 +140,12 @@ static void note_pair(const phys_bodies *b, uint32_t *parent, float *ratio, uint
 static void note_hold(const phys_world *w, hold *h, uint32_t joint, bool on_b) {
     const phys_joints *j = &w->joints;
     core_vec3 arm = on_b ? j->lb[joint] : j->la[joint];
+    bool plain = j->cone[joint] <= 0.0f && j->hertz[joint] <= 0.0f && j->damping[joint] <= 0.0f &&
+                 (j->flags[joint] & (PHYS_JOINT_LIMITED | PHYS_JOINT_DRIVEN)) == 0;
     h->count++;
     h->pull += core_v3_length(j->force[joint]) * core_v3_length(arm);
-    h->other |= j->type[joint] != PHYS_JOINT_BALL || j->cone[joint] > 0.0f ||
-                (j->flags[joint] & (PHYS_JOINT_LIMITED | PHYS_JOINT_DRIVEN)) != 0 ||
-                j->hertz[joint] > 0.0f || j->damping[joint] > 0.0f;
+    h->other |= j->type[joint] != PHYS_JOINT_BALL || !plain;
+    h->bars |= j->type[joint] != PHYS_JOINT_DISTANCE || !plain;
 }
 
 static void gather_joints(phys_world *w, uint32_t *parent, hold *holds) {
@@ -187,17 +188,33 @@ static bool is_chain(const island *s) {
     return s->joints + s->anchors != 0 && !s->branched && s->joints < s->count && s->anchors <= 1;
 }
 
+// Rods with loops that touch nothing.
+static bool is_net(const island *s) { return !s->bars && s->joints >= s->count && !s->touched; }
+
+static uint8_t chain_level(const phys_world *w, const island *s, float dt) {
+    float substeps = CHAIN_SUBSTEPS * dt * core_sqrtf(s->rate);
+    float usual = (float)w->solver->substeps;
+    if (substeps > usual) {
+        return substeps <= 2.0f * usual ? PHYS_LEVEL_MORE : PHYS_LEVEL_MOST;
+    }
+    bool few = substeps <= 0.5f * usual && s->joints >= CHAIN_MANY;
+    return few ? PHYS_LEVEL_FEW : PHYS_LEVEL_DEFAULT;
+}
+
+int phys_level_substeps(const phys_world *w, uint32_t level) {
+    static const int halves[PHYS_LEVELS] = {2, 4, 8, 1, 3};
+    return w->substeps ? w->substeps : CORE_MAX(w->solver->substeps * halves[level] / 2, 1);
+}
+
 static uint8_t island_level(const phys_world *w, const island *s, float dt) {
     if (is_chain(s) && !s->touched) {
-        float substeps = CHAIN_SUBSTEPS * dt * core_sqrtf(s->rate);
-        float most = (float)w->solver->substeps;
-        return substeps <= 0.5f * most   ? PHYS_LEVEL_FEW
-               : substeps <= most        ? 0
-               : substeps <= 2.0f * most ? 1
-                                         : 2;
+        return chain_level(w, s, dt);
+    }
+    if (is_net(s)) {
+        return PHYS_LEVEL_NET;
     }
     if (s->ratio > VERY_HEAVY_RATIO) {
-        return 2;
+        return PHYS_LEVEL_MOST;
     }
     core_vec3 size = core_v3_sub(s->hi, s->lo);
     core_vec3 up = phys_unit(w->gravity, core_v3(0, 0, 0));
@@ -205,7 +222,7 @@ static uint8_t island_level(const phys_world *w, const island *s, float dt) {
     core_vec3 flat = core_v3_sub(size, core_v3_scale(phys_abs3(up), height));
     bool slender = s->count >= SLENDER_BODIES && height > SLENDER_RATIO * core_v3_length(flat);
     bool chain = s->joints >= CHAIN_JOINTS && s->joints < s->count;
-    return s->ratio > HEAVY_RATIO || slender || chain ? 1 : 0;
+    return s->ratio > HEAVY_RATIO || slender || chain ? PHYS_LEVEL_MORE : PHYS_LEVEL_DEFAULT;
 }
 
 static void put_to_sleep(phys_bodies *b, uint32_t i, uint32_t id) {
@@ -223,6 +240,7 @@ static void note_turning(const phys_bodies *b, uint32_t i, const hold *h, island
     s->joints += h->joints;
     s->anchors += h->anchors;
     s->branched |= h->count > 2 || h->other;
+    s->bars |= h->bars;
 }
 
 // Sums up islands by their leading rows. Returns how many there are.

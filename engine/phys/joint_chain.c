@@ -87,6 +87,7 @@ static void make_columns(soft_joints *s, const uint32_t *node, const uint32_t *j
     c->place = CORE_ARENA_ARRAY(arena, int32_t, c->slots);
     c->to = CORE_ARENA_ARRAY(arena, int32_t, c->slots);
     c->work = CORE_ARENA_ARRAY(arena, uint32_t, c->slots);
+    s->rotation = CORE_ARENA_ARRAY(arena, core_quat, s->bodies->count + 1);
     c->factor = CORE_ARENA_ARRAY(arena, joint_factor, c->slots);
     for (uint32_t i = 0; i < c->slots; i++) {
         c->place[i] = c->to[i] = (int32_t)s->bodies->count;
@@ -147,10 +148,9 @@ void joint_chains_end(soft_joints *s) {
     for (uint32_t k = 0; k < c->count; k++) {
         for (uint32_t i = 0; i <= c->chain[k].joints; i++) {
             uint32_t slot = c->chain[k].first + i;
-            size_t at = (size_t)c->to[slot] * 8;
             core_vec3 q = get(c, CHAIN_Q, slot), load = get(c, CHAIN_LOAD, slot);
-            memcpy(s->poses.pose + at + 4, &q, sizeof q);
-            s->poses.real[at] = c->data[(size_t)(CHAIN_Q + 3) * c->slots + slot];
+            float real = c->data[(size_t)(CHAIN_Q + 3) * c->slots + slot];
+            s->rotation[c->to[slot]] = (core_quat){q.x, q.y, q.z, real};
             s->jointed[c->to[slot]] = PHYS_CHAINED;
             if (i == c->chain[k].joints) {
                 continue;
@@ -159,7 +159,8 @@ void joint_chains_end(soft_joints *s) {
             bool flip = s->body[w->b].place != (uint32_t)c->place[slot + 1];
             w->force = core_v3_scale(load, flip ? -1.0f : 1.0f);
             for (int n = 0; n < 3; n++) {
-                w->row[n].impulse = phys_comp(w->force, n) * s->h / s->elapsed;
+                s->world->joints.impulse[w->joint].hard[n] =
+                    phys_comp(w->force, n) * s->h / s->elapsed;
             }
         }
     }

@@ -1,8 +1,6 @@
 // Chains of ball joints: everything by slot in wide lanes but the elimination, which runs from both
 // ends to the middle in double precision.
-#include "phys/joint_chain.h"
-
-#include "phys/rows.h"
+#include "phys/joint_wide.h"
 
 // Part of a joint's own answer added to it: joints that say the same twice stay solvable.
 #define REGULAR 1e-7
@@ -27,19 +25,9 @@ ROWS_INLINE void set(const span *s, int column, int i, rows3 v) {
     rows_store(p, p + s->stride, p + 2 * s->stride, v);
 }
 
-typedef struct inertia {
-    rows3 diagonal, off; // xx yy zz, xy xz yz
-} inertia;
-ROWS_INLINE inertia inertia_of(const span *s, int i) {
-    return (inertia){get(s, CHAIN_I, i), get(s, CHAIN_I + 3, i)};
+ROWS_INLINE wide_inertia inertia_of(const span *s, int i) {
+    return (wide_inertia){get(s, CHAIN_I, i), get(s, CHAIN_I + 3, i)};
 }
-ROWS_INLINE rows3 turn_by(const inertia *i, rows3 v) {
-    return (rows3){
-        vf_add(vf_add(vf_mul(i->diagonal.x, v.x), vf_mul(i->off.x, v.y)), vf_mul(i->off.y, v.z)),
-        vf_add(vf_add(vf_mul(i->off.x, v.x), vf_mul(i->diagonal.y, v.y)), vf_mul(i->off.z, v.z)),
-        vf_add(vf_add(vf_mul(i->off.y, v.x), vf_mul(i->off.z, v.y)), vf_mul(i->diagonal.z, v.z))};
-}
-
 ROWS_INLINE rows3 rotate(const span *s, int i, rows3 v) {
     rows3 u = get(s, CHAIN_Q, i);
     rows3 t = rows_cross(u, v);
@@ -64,11 +52,11 @@ ROWS_INLINE void turn(const span *s, int i, rows3 t) {
 typedef struct matrix {
     rows3 x, y, z;
 } matrix;
-ROWS_INLINE matrix turning(const inertia *i, rows3 r, rows3 s) {
+ROWS_INLINE matrix turning(const wide_inertia *i, rows3 r, rows3 s) {
     vf o = vf_zero();
-    return (matrix){rows_cross(r, turn_by(i, (rows3){o, s.z, vf_neg(s.y)})),
-                    rows_cross(r, turn_by(i, (rows3){vf_neg(s.z), o, s.x})),
-                    rows_cross(r, turn_by(i, (rows3){s.y, vf_neg(s.x), o}))};
+    return (matrix){rows_cross(r, wide_turn(i, (rows3){o, s.z, vf_neg(s.y)})),
+                    rows_cross(r, wide_turn(i, (rows3){vf_neg(s.z), o, s.x})),
+                    rows_cross(r, wide_turn(i, (rows3){s.y, vf_neg(s.x), o}))};
 }
 
 ROWS_INLINE void make_arms(const span *s) {
@@ -81,7 +69,7 @@ ROWS_INLINE void make_arms(const span *s) {
 ROWS_INLINE void make_blocks(const span *s) {
     for (int i = 0; i < s->nodes; i += CORE_SIMD_WIDTH) {
         rows3 ra = get(s, CHAIN_RA, i), rb = get(s, CHAIN_RB, i), rn = get(s, CHAIN_RA, i + 1);
-        inertia ia = inertia_of(s, i), ib = inertia_of(s, i + 1);
+        wide_inertia ia = inertia_of(s, i), ib = inertia_of(s, i + 1);
         vf im = get1(s, CHAIN_IM, i + 1), mass = vf_add(get1(s, CHAIN_IM, i), im);
         matrix a = turning(&ia, ra, ra), b = turning(&ib, rb, rb), e = turning(&ib, rb, rn);
         set(s, CHAIN_D, i,
@@ -278,10 +266,10 @@ typedef struct gain {
 } gain;
 ROWS_INLINE gain gain_of(const span *s, int i) {
     rows3 before = get(s, CHAIN_X, i - 1), after = get(s, CHAIN_X, i);
-    inertia in = inertia_of(s, i);
+    wide_inertia in = inertia_of(s, i);
     rows3 t = rows_sub(rows_cross(get(s, CHAIN_RB, i - 1), before),
                        rows_cross(get(s, CHAIN_RA, i), after));
-    return (gain){rows_mul(rows_sub(before, after), get1(s, CHAIN_IM, i)), turn_by(&in, t)};
+    return (gain){rows_mul(rows_sub(before, after), get1(s, CHAIN_IM, i)), wide_turn(&in, t)};
 }
 
 ROWS_INLINE void add_rows(float *to, const span *s, int i, const gain *g, vf scale) {

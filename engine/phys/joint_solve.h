@@ -18,9 +18,9 @@
 
 // A body that joints hold. Entry 0 is the world.
 typedef struct joint_body {
-    uint32_t row, place; // place: in soft_bodies
-    bool mobile, placed; // placed: has a velocity (mobile or kinematic)
-    bool chained;
+    uint32_t row, place;   // place: in soft_bodies
+    bool mobile, placed;   // placed: has a velocity (mobile or kinematic)
+    bool chained, general; // general: some joint of it has rows
     float im;
     core_vec3 center; // now
     core_quat q, q0;  // now, at the start of the step
@@ -38,20 +38,36 @@ typedef struct joint_row {
     float impulse;
 } joint_row;
 
+typedef enum joint_lane_kind {
+    JOINT_LANES_BLOCK, // any rows
+    JOINT_LANES_POINT, // ball joints that need no more than a point held
+    JOINT_LANES_ROD,   // hard distances
+    JOINT_LANE_KINDS,
+    JOINT_LANES_NONE = JOINT_LANE_KINDS
+} joint_lane_kind;
+#define JOINT_COLORS 64u // one more for bodies with more joints than colours, one joint a block
+
 typedef struct joint_work {
     uint32_t joint; // row of the columns
     uint32_t a, b;  // joint_body
-    uint8_t type, hard, soft;
+    uint8_t type, hard, soft, lanes;
     bool direct;  // hard rows belong to a tree
     bool chained; // joint of a chain
-    bool blocked; // has a lane
-    bool pointed; // in joint_points
     bool upper;   // side of the limit in this step
     uint32_t block, lane;
     core_vec3 force, torque; // impulses on b, sum over the substeps so far, N s and N m s
     core_vec3 arm_b;         // from the centre of b to its anchor
-    joint_row row[PHYS_JOINT_HARD + PHYS_JOINT_SOFT]; // hard ones, then soft ones
+    joint_row *row;          // hard ones, then soft ones; NULL: points, rods and chains have none
 } joint_work;
+
+// What all kinds of lanes begin with. Lanes whose body stays write to the row of empty lanes; poses
+// are by joint_body.
+typedef struct joint_head {
+    _Alignas(CORE_ALIGN) int32_t a[SOFT_LANES];
+    int32_t b[SOFT_LANES], to_a[SOFT_LANES], to_b[SOFT_LANES];
+    int32_t pose_a[SOFT_LANES], pose_b[SOFT_LANES];
+    LANES ima[SOFT_LANES], imb[SOFT_LANES];
+} joint_head;
 
 typedef struct joint_lanes {
     LANES j[12][SOFT_LANES];
@@ -60,30 +76,38 @@ typedef struct joint_lanes {
     LANES lo[SOFT_LANES], hi[SOFT_LANES], mass[SOFT_LANES], impulse[SOFT_LANES];
 } joint_lanes;
 
-// Lanes whose body stays write to the row of empty lanes. inverse: of the hard rows' matrix.
 typedef struct joint_block {
-    _Alignas(CORE_ALIGN) int32_t a[SOFT_LANES];
-    int32_t b[SOFT_LANES], to_a[SOFT_LANES], to_b[SOFT_LANES];
-    LANES ima[SOFT_LANES], imb[SOFT_LANES];
-    LANES inverse[PHYS_JOINT_HARD][PHYS_JOINT_HARD][SOFT_LANES];
+    joint_head head;
+    LANES inverse[PHYS_JOINT_HARD][PHYS_JOINT_HARD][SOFT_LANES]; // of the hard rows' matrix
     joint_lanes hard[PHYS_JOINT_HARD], soft[PHYS_JOINT_SOFT];
     uint32_t hard_count, soft_count; // most of any lane
 } joint_block;
 
-// Ball joints that need no more than a point held. la, lb: arms in the bodies' axes, or places in
-// the world for what does not move. diagonal, off: of the inverse matrix.
+// la, lb: arms in the bodies' axes. diagonal, off: of the inverse matrix.
 typedef struct joint_points {
-    _Alignas(CORE_ALIGN) int32_t a[SOFT_LANES];
-    int32_t b[SOFT_LANES], to_a[SOFT_LANES], to_b[SOFT_LANES];
-    LANES ima[SOFT_LANES], imb[SOFT_LANES];
+    joint_head head;
     LANES la[3][SOFT_LANES], lb[3][SOFT_LANES], ra[3][SOFT_LANES], rb[3][SOFT_LANES];
     LANES gap[3][SOFT_LANES], diagonal[3][SOFT_LANES], off[3][SOFT_LANES];
-    LANES impulse[3][SOFT_LANES];
+    LANES impulse[3][SOFT_LANES], load[3][SOFT_LANES]; // load: sum over the substeps
+    LANES ia[SOFT_LANES], ib[SOFT_LANES];
+    bool round; // all bodies have equal moments: ia and ib are their inverses
 } joint_points;
 
-// Poses of bodies by place, rows of 8: centre, 0, imaginary part of the rotation, 0; real part.
+typedef struct joint_rods {
+    joint_head head;
+    LANES la[3][SOFT_LANES], lb[3][SOFT_LANES], ra[3][SOFT_LANES], rb[3][SOFT_LANES];
+    LANES n[3][SOFT_LANES], load[3][SOFT_LANES]; // n: unit, from a to b
+    LANES rest[SOFT_LANES], gap[SOFT_LANES], mass[SOFT_LANES], impulse[SOFT_LANES];
+    LANES bend[SOFT_LANES]; // half of one over the length
+    bool arms;              // some anchor is off its body's centre
+} joint_rods;
+
+// Poses by joint_body, rows of 8: centre, 0, imaginary part of the rotation, 0; real part. start:
+// at the start of the step. place: row of soft_bodies.
 typedef struct joint_poses {
-    float *pose, *real;
+    float *start, *start_real, *pose, *real;
+    int32_t *place;
+    uint32_t count;
 } joint_poses;
 
 // One elimination: the joint of a body to its parent in the tree, or to what does not move.
@@ -115,18 +139,21 @@ typedef struct soft_joints {
     float elapsed; // s, in this step
     joint_body *body;
     uint32_t body_count;
-    uint8_t *jointed; // by place: PHYS_JOINTED or PHYS_CHAINED
-    bool alone;       // no contact on the level
+    uint8_t *jointed;    // by place: PHYS_JOINTED or PHYS_CHAINED
+    core_quat *rotation; // by place, of chained bodies at the end of the step
+    bool alone;          // no contact on the level
+    bool stale;          // lanes of points and rods are to be made anew
     joint_work *work;
     uint32_t count;
-    uint32_t others; // joints outside of chains
+    uint32_t *general, general_count; // those with rows
+    uint32_t others;                  // joints outside of chains
     joint_tree tree;
     joint_chains chains;
+    joint_poses poses;
     joint_block *block;
     joint_points *point;
-    joint_poses poses;
-    uint32_t *first, *first_point; // first block of each colour
-    uint32_t colors;
+    joint_rods *rod;
+    uint32_t first[JOINT_LANE_KINDS][JOINT_COLORS + 2]; // first block of each colour
 } soft_joints;
 
 // joint_rows.c
@@ -134,6 +161,12 @@ void joint_rows_count(const phys_joints *j, uint32_t row, uint8_t *hard, uint8_t
 void joint_rows_make(const soft_joints *s, joint_work *k);
 // Whether the upper limit is the nearer one.
 bool joint_rows_upper(const soft_joints *s, const joint_work *k);
+
+// joint_lanes.c
+void joint_lanes_build(soft_joints *s);
+void joint_lanes_refresh(soft_joints *s, uint32_t general);
+void joint_lanes_exchange(soft_joints *s, bool to_lanes); // impulses of rows, to or from the lanes
+void joint_lanes_end(soft_joints *s);
 
 // joint_chain.c: after joint_tree_choose, takes its joints from the trees.
 void joint_chains_build(soft_joints *s);
@@ -158,9 +191,15 @@ void phys_soft_joints_end(soft_joints *s);
 CORE_SIMD_DECLARE(void, phys_joint_blocks,
                   (joint_block * block, uint32_t count, soft_bodies *bodies, soft_pass pass))
 
-// With poses: prepares; without: runs a pass.
+// With poses: makes arms and matrices anew before.
 CORE_SIMD_DECLARE(void, phys_joint_points,
                   (joint_points * block, uint32_t count, soft_bodies *bodies,
-                   const joint_poses *poses, soft_pass pass, float inv_h))
+                   const joint_poses *poses, soft_pass pass, float h))
+CORE_SIMD_DECLARE(void, phys_joint_rods,
+                  (joint_rods * block, uint32_t count, soft_bodies *bodies,
+                   const joint_poses *poses, soft_pass pass, float h))
+// Rows [begin, end), multiples of 16.
+CORE_SIMD_DECLARE(void, phys_joint_poses,
+                  (joint_poses * poses, uint32_t begin, uint32_t end, const soft_bodies *bodies))
 
 #endif

@@ -483,9 +483,8 @@ static void finish_body(soft *s, uint32_t k) {
     }
     phys_put3(b->cx, b->cy, b->cz, i, core_v3_add(phys_get3(b->cx, b->cy, b->cz, i), way));
     if (s->joints != NULL && s->joints->jointed[k] == PHYS_CHAINED) {
-        const float *q = s->joints->poses.pose + (size_t)k * 8 + 4;
         phys_finish_precession(b, i, s->dt);
-        phys_put_quat(b, i, (core_quat){q[0], q[1], q[2], s->joints->poses.real[(size_t)k * 8]});
+        phys_put_quat(b, i, s->joints->rotation[k]);
         return;
     }
     phys_finish_rotation(b, i, turn, s->dt, free);
@@ -586,11 +585,10 @@ static void collect(soft *s) {
 
 static void step_level(phys_world *w, float dt, uint32_t level) {
     size_t mark = core_arena_mark(&w->scratch);
-    int most = level == PHYS_LEVEL_FEW ? w->solver->substeps / 2 : w->solver->substeps << level;
-    int substeps = w->substeps ? w->substeps : most;
+    int substeps = phys_level_substeps(w, level);
     soft s = {
         .world = w, .dt = dt, .h = dt / (float)substeps, .level = level, .substeps = substeps};
-    float stiffness = level == 0 ? STIFFNESS : STIFFNESS_HARD;
+    float stiffness = level == PHYS_LEVEL_DEFAULT ? STIFFNESS : STIFFNESS_HARD;
     s.spring = make_spring(s.h, stiffness);
     s.spring_fixed = make_spring(s.h, 2.0f * stiffness);
     s.run_balls = CORE_SIMD_SELECT(phys_soft_balls);

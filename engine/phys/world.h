@@ -272,9 +272,15 @@ typedef struct phys_solver_method {
     bool sleeps;              // leaves sleeping bodies out and has levels of substeps
     void (*step)(phys_world *world, float dt);
 } phys_solver_method;
-// Levels of substeps: the solver's default, twice and four times as many; half for calm chains.
-#define PHYS_LEVELS    4u
-#define PHYS_LEVEL_FEW 3u
+// Levels of substeps, as multiples of half the solver's default.
+enum {
+    PHYS_LEVEL_DEFAULT,
+    PHYS_LEVEL_MORE,
+    PHYS_LEVEL_MOST,
+    PHYS_LEVEL_FEW, // calm chains
+    PHYS_LEVEL_NET, // cloth of rods
+    PHYS_LEVELS
+};
 
 // Where static bodies changed; see phys_world_static_changes.
 #define PHYS_STATIC_LOG 256u
@@ -512,6 +518,7 @@ void phys_manifold_reduce(const core_vec3 *p, const float *separation, int n, co
 void phys_islands_update(phys_world *world, float dt);
 void phys_wake_row(phys_world *world, uint32_t row); // with its island
 void phys_wake_all(phys_world *world);
+int phys_level_substeps(const phys_world *world, uint32_t level);
 
 // events.c, fields.c
 void phys_event_push(phys_event_list *list, const phys_event *event);
