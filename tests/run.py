@@ -10,6 +10,9 @@ command line and scene tests under the sanitizers, and compares the hashes of ev
 instruction set and thread count. `make test` and `make test-long` build what is needed; a program
 that is missing counts as a failure.
 
+Figures that tests print as `accuracy: {"name", "value", "bound", "unit"}` (tests/support/accuracy.h)
+are left in out/accuracy.json; --only and --long renew those of the tests that they run.
+
 A scene test is a Lua scene with `corsac.expect`; it must exit with 0. Comment lines at its head may
 hold  `-- args: --steps 120 --set n=5`  (more arguments for `corsac run`),  `-- window`  (run in a
 window under xvfb-run instead of headless) and  `-- needs: PATH`  (skipped where PATH, relative to
@@ -18,6 +21,7 @@ the repository, is absent).
 
 import argparse
 import concurrent.futures
+import json
 import os
 import re
 import shlex
@@ -37,6 +41,7 @@ SANITIZERS = {
 }
 PLAYER = {"CORSAC_SAVE": str(ROOT / "build/player")}  # scenes that save do so here
 INSTRUCTION_SETS = {"sse2": "sse2", "avx2": "avx2", "avx512": "avx512f"}
+figures = {}  # of out/accuracy.json, by name
 window_lock = threading.Lock()  # xvfb-run -a picks a display number without locking it
 
 
@@ -58,7 +63,13 @@ def run_program(command, limit, env=None):
         done = subprocess.run(
             [str(word) for word in command], cwd=ROOT, env={**os.environ, **SANITIZERS, **PLAYER, **(env or {})},
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=limit)
-        return done.returncode, done.stdout.decode("utf-8", "replace")
+        text = done.stdout.decode("utf-8", "replace")
+        for line in re.findall(r"^accuracy: (\{.*\})$", text, re.M):
+            figure = json.loads(line)
+            before = figures.get(figure["name"])
+            if not before or before["value"] < figure["value"]:  # of one name, the worst
+                figures[figure["name"]] = figure
+        return done.returncode, text
     except subprocess.TimeoutExpired as late:
         return None, (late.stdout or b"").decode("utf-8", "replace")
 
@@ -229,6 +240,14 @@ def report(name, outcome, seconds):
     sys.stdout.flush()
 
 
+def write_figures(whole):
+    path = ROOT / "out/accuracy.json"
+    before = {} if whole or not path.exists() else {f["name"]: f for f in json.loads(path.read_text())}
+    path.parent.mkdir(exist_ok=True)
+    lines = [json.dumps(figure) for _, figure in sorted({**before, **figures}.items())]
+    path.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description="Runs the tests; see the head of this file.")
     parser.add_argument("--long", action="store_true", help="the long set instead of the quick one")
@@ -246,6 +265,8 @@ def main():
             passed += outcome.passed
             failed += outcome.failed
             skipped += len(outcome.skipped)
+    if figures:
+        write_figures(whole=not (options.only or options.long))
     if not tests:
         print(f"no test's name contains '{options.only}'")
     print(f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else ""))

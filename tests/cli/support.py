@@ -1,5 +1,6 @@
 """What command line tests share: running the real program (its path is in CORSAC)."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -9,6 +10,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 CORSAC = os.environ.get("CORSAC", str(ROOT / "build/corsac"))
+
+
+def figure(name, value, bound, unit):
+    """A line that tests/run.py collects in out/accuracy.json; whether value <= bound."""
+    print("\naccuracy: " + json.dumps({"name": name, "value": value, "bound": bound, "unit": unit}), flush=True)
+    return value <= bound
 
 
 class Result:

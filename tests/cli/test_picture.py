@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import png
-from support import ROOT, SceneCase
+from support import ROOT, SceneCase, figure
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden"
 
@@ -40,7 +40,7 @@ class Picture(SceneCase):
         if os.environ.get("GOLDEN") == "write":
             shutil.copy(out, kept)
         share = png.compare(kept, out)
-        if share > 0.001:
+        if not figure(f"gfx: golden picture {name}, pixels off by more than 5 of 255", share, 0.001, "of all"):
             sheet = ROOT / f"out/golden-{name}.png"
             sheet.parent.mkdir(exist_ok=True)
             png.difference(kept, out, sheet)

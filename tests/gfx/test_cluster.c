@@ -5,6 +5,7 @@
 #include "core/rng.h"
 #include "core/simd.h"
 #include "ref/frustum.h"
+#include "support/accuracy.h"
 #include "unity.h"
 
 #include <math.h>
@@ -83,7 +84,7 @@ static uint32_t expect_complete(const gfx_cluster_grid *g, const gfx_cluster_lig
             }
         }
     }
-    TEST_ASSERT_EQUAL_UINT32(0, missing);
+    accuracy_at_most("gfx: cells without a light that reaches them", missing, 0.0, "cells");
     return exact;
 }
 
@@ -97,6 +98,7 @@ static void test_lists_against_exact_distance(void) {
                  {{20, 7, 12}, false, true, 5.0f},
                  {{5, 3, 8}, false, false, 30.0f},
                  {{40, 20, 4}, false, false, 1.0f}};
+    double worst = 0.0;
     for (size_t i = 0; i < CORE_COUNT_OF(cases); ++i) {
         gfx_cluster_grid g = make_grid(cases[i].size[0], cases[i].size[1], cases[i].size[2],
                                        cases[i].linear, cases[i].ortho);
@@ -110,13 +112,12 @@ static void test_lists_against_exact_distance(void) {
             double ratio = (double)c.total / exact;
             printf("%ux%ux%u %s: %u entries, %.3f of the exact pairs\n", g.columns, g.rows,
                    g.slices, gfx_cluster_method_name((gfx_cluster_method)m), c.total, ratio);
-            if (m == GFX_CLUSTER_SIMD) {
-                TEST_ASSERT_TRUE(ratio <= 1.10);
-            }
+            worst = m == GFX_CLUSTER_SIMD ? fmax(worst, ratio) : worst;
             gfx_clusters_release(&c);
         }
         gfx_cluster_lights_release(&l);
     }
+    accuracy_at_most("gfx: entries of cluster lists, part of the exact ones", worst, 1.10, "1");
 }
 
 // Lights that hold the camera, cross the near plane, stand behind it, or are degenerate.

@@ -5,6 +5,7 @@
 
 #include "core/rng.h"
 #include "core/simd.h"
+#include "support/accuracy.h"
 #include "unity.h"
 
 #include <math.h>
@@ -138,8 +139,8 @@ static tally compare(const gfx_cluster_grid *g, const gfx_lights *l, const gfx_c
     return t;
 }
 
-static void check(float least_angle, float most_angle, bool orthographic, const uint32_t size[3],
-                  double most_ratio) {
+static void check(const char *name, float least_angle, float most_angle, bool orthographic,
+                  const uint32_t size[3], double most_ratio) {
     gfx_world *world = spot_world(least_angle, most_angle, 3);
     gfx_view view = make_view(orthographic);
     gfx_cluster_grid g;
@@ -163,10 +164,10 @@ static void check(float least_angle, float most_angle, bool orthographic, const 
                (double)least_angle, (double)most_angle, size[0], size[1], size[2],
                orthographic ? " orthographic" : "", gfx_cluster_method_name((gfx_cluster_method)m),
                t.entries, (double)t.entries / t.needed, (double)t.entries / spheres[m]);
-        TEST_ASSERT_EQUAL_UINT32(0, t.missing);
+        accuracy_at_most("gfx: cells without a spot that reaches them", t.missing, 0.0, "cells");
         TEST_ASSERT_GREATER_THAN(100, t.needed);
         if (m == GFX_CLUSTER_SIMD) {
-            TEST_ASSERT_TRUE((double)t.entries / t.needed <= most_ratio);
+            accuracy_at_most(name, (double)t.entries / t.needed, most_ratio, "1");
         }
         gfx_clusters_release(&c);
     }
@@ -177,13 +178,24 @@ static void check(float least_angle, float most_angle, bool orthographic, const 
 
 static const uint32_t usual[3] = {16, 9, 24};
 
-static void test_common_spots(void) { check(0.2f, 0.8f, false, usual, 1.1); }
-static void test_narrow_spots(void) { check(0.002f, 0.1f, false, usual, 1.4); }
-static void test_wide_spots(void) { check(0.8f, 1.57f, false, usual, 1.1); }
-static void test_orthographic(void) { check(0.2f, 1.2f, true, usual, 1.1); }
+static void test_common_spots(void) {
+    check("gfx: entries of spots of 0.2 to 0.8 rad, part of the needed", 0.2f, 0.8f, false, usual,
+          1.1);
+}
+static void test_narrow_spots(void) {
+    check("gfx: entries of spots of 0.002 to 0.1 rad, part of the needed", 0.002f, 0.1f, false,
+          usual, 1.4);
+}
+static void test_wide_spots(void) {
+    check("gfx: entries of spots of 0.8 to 1.57 rad, part of the needed", 0.8f, 1.57f, false, usual,
+          1.1);
+}
+static void test_orthographic(void) {
+    check("gfx: entries of spots, orthographic, part of the needed", 0.2f, 1.2f, true, usual, 1.1);
+}
 static void test_coarse_grid(void) {
     const uint32_t size[3] = {5, 3, 4};
-    check(0.2f, 0.8f, false, size, 1.2);
+    check("gfx: entries of spots in large cells, part of the needed", 0.2f, 0.8f, false, size, 1.2);
 }
 
 // Vectors of any width and any number of threads give the same lists.
