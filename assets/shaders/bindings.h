@@ -16,7 +16,8 @@ typedef float gfx_glsl_vec4[4];
 #endif
 
 // Uniform blocks.
-#define GFX_UBO_VIEW 0
+#define GFX_UBO_VIEW    0
+#define GFX_UBO_TERRAIN 1
 
 // Storage blocks.
 #define GFX_SSBO_LIGHTS          0
@@ -37,16 +38,20 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_TEX_METALLIC_ROUGHNESS 2
 #define GFX_TEX_OCCLUSION          3
 #define GFX_TEX_EMISSIVE           4
-#define GFX_TEX_DFG                5
-#define GFX_TEX_SHADOW             6
-#define GFX_TEX_HDR                8
-#define GFX_TEX_IMAGE              9
-#define GFX_TEX_ENVIRONMENT        10
-#define GFX_TEX_PANORAMA           11
-#define GFX_TEX_AO                 12
-#define GFX_TEX_BLOOM              13
-#define GFX_TEX_DEPTH              14
-#define GFX_TEX_LIGHTS             15
+// Terrain has the units of material maps, which it does not use.
+#define GFX_TEX_TERRAIN_IMAGE  0
+#define GFX_TEX_TERRAIN_NORMAL 1
+#define GFX_TEX_TERRAIN_HEIGHT 2
+#define GFX_TEX_DFG            5
+#define GFX_TEX_SHADOW         6
+#define GFX_TEX_HDR            8
+#define GFX_TEX_IMAGE          9
+#define GFX_TEX_ENVIRONMENT    10
+#define GFX_TEX_PANORAMA       11
+#define GFX_TEX_AO             12
+#define GFX_TEX_BLOOM          13
+#define GFX_TEX_DEPTH          14
+#define GFX_TEX_LIGHTS         15
 
 #define GFX_DFG_SIZE           64 // texels a side
 #define GFX_ENVIRONMENT_SIZE   64 // texels a side of a face of the first level
@@ -158,6 +163,20 @@ struct gfx_material_block {
     GFX_VEC4(base_color);
     GFX_VEC4(emissive_metallic); // rgb, metallic
     GFX_VEC4(params);            // roughness, normal scale, occlusion strength, alpha cut-off
+};
+
+#define GFX_TERRAIN_LEVELS 16
+#define GFX_TERRAIN_TILE   16 // squares along an edge of a tile
+
+struct gfx_terrain_block {
+    GFX_VEC4(origin); // of the first point, m; 1 with an image
+    GFX_VEC4(eye);    // that distances are taken from
+    GFX_VEC4(grid);   // m from point to point along x, z; last column, last row
+    GFX_VEC4(low);    // linear base colours; roughness
+    GFX_VEC4(high);
+    GFX_VEC4(steep);
+    GFX_VEC4(blend); // height from which high begins, 1 over its span; slope of steep, the same
+    GFX_VEC4(morph[GFX_TERRAIN_LEVELS]); // distance at which a level turns, 1 over the way
 };
 
 struct gfx_line_block {

@@ -10,6 +10,9 @@
 #ifdef USE_FOG
 #include "fog.glsl"
 #endif
+#ifdef USE_TERRAIN
+#include "ground.glsl"
+#endif
 #ifdef USE_AO
 layout(binding = GFX_TEX_AO) uniform sampler2D u_ao;
 #endif
@@ -41,7 +44,11 @@ mat3 tangentFrame(vec3 n) {
 #endif
 
 vec3 shadingNormal(gfx_material_block m) {
+#ifdef USE_TERRAIN
+    vec3 n = groundNormal(v_world);
+#else
     vec3 n = normalize(v_normal);
+#endif
 #ifdef USE_TEXTURES
     vec3 texel = texture(u_normal, v_uv).xyz * (255.0 / 127.0) - 128.0 / 127.0;
     texel.xy *= m.params.y;
@@ -72,7 +79,11 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
 
 void main() {
     gfx_material_block m = v_material;
+#ifdef USE_TERRAIN
+    vec4 base = groundColor(v_world);
+#else
     vec4 base = baseColor(m);
+#endif
 #ifdef USE_ALPHA_MASK
     if (base.a < m.params.w) {
         discard;

@@ -63,6 +63,10 @@ Receiver receiverOf(gfx_shadow_block v, Surface s, float texel) {
     r.slope = abs(area) > 1e-20
                   ? vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / area : vec2(0.0);
     r.grace = (abs(r.slope.x) + abs(r.slope.y)) * 0.25 / v.texel.z + r.at.z * 4e-6 + 2e-7;
+#ifdef USE_TERRAIN
+    // Small facets bend away within a texel: as far as slopes of neighbours differ by about a half.
+    r.grace += 0.75 * texel / v.depth.x * (v.depth.y > 0.0 ? r.at.z * r.at.z : 1.0);
+#endif
     return r;
 }
 
@@ -132,8 +136,15 @@ float penumbraWidth(gfx_shadow_block v, Receiver r, float texel, float turn) {
 
 // 1 where light reaches, 0 in full shadow.
 float shadowTerm(gfx_light_block light, Surface s, vec3 l) {
-    if (light.color.w == 0.0 || dot(s.flatNormal, l) <= 0.0) {
+    if (light.color.w == 0.0) {
         return 1.0;
+    }
+    if (dot(s.flatNormal, l) <= 0.0) {
+#ifdef USE_TERRAIN
+        return 0.0; // facets are large, and a valley's lie deep in the shadow of its side
+#else
+        return 1.0; // the shading normal fades the light out over small facets
+#endif
     }
     gfx_shadow_block v = shadowViews[shadowViewOf(light, s.position)];
     float texel = v.texel.x;

@@ -74,6 +74,7 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //                overdraw
 //   prepass      on | off: depth first, so that no hidden fragment is shaded
 //   levels       on | off: coarser built-in meshes where half a pixel does not tell
+//   terrain_error  pixels that terrain may be off its finest form, 0..100, default 1
 //   culling      on | off: skip what is outside the view
 //   instancing   on | off (off: one draw call per instance, the baseline of the draw counts)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);
@@ -178,6 +179,27 @@ void gfx_camera_ray(const gfx_camera *camera, float width, float height, float x
                     core_vec3 *origin, core_vec3 *direction);
 // Where a point is in the picture: pixels, and its distance along the view (m, negative behind).
 core_vec3 gfx_camera_project(const gfx_camera *camera, float width, float height, core_vec3 point);
+
+// ---- terrain ----
+// The surface of a field of heights, drawn by tiles that are as fine as they need to be to look
+// true within gfx.terrain_error pixels; levels turn into one another without a jump or a crack.
+typedef core_handle gfx_terrain;
+typedef struct gfx_terrain_desc {
+    core_heights_data heights;       // copied; at most 8193 points a side
+    float low[3], high[3], steep[3]; // base colours, linear
+    float heights_blend[2];          // m: from low to high, default none
+    float slopes_blend[2];           // rise over run: from flat to steep, default 0.5 to 0.9
+    const char *image;               // multiplies them, stretched over the whole; NULL: none
+    float roughness;                 // default 0.9
+    uint32_t cookie;
+} gfx_terrain_desc;
+gfx_terrain_desc gfx_terrain_desc_default(void); // grass and rock
+gfx_terrain gfx_terrain_create(gfx_world *world, const gfx_terrain_desc *desc);
+bool gfx_terrain_destroy(gfx_world *world, gfx_terrain terrain);
+bool gfx_terrain_alive(const gfx_world *world, gfx_terrain terrain);
+// Height of its finest surface at x, z (m); false beside it.
+bool gfx_terrain_height(const gfx_world *world, gfx_terrain terrain, float x, float z,
+                        float *height);
 
 // ---- particles ----
 // Small squares that face the viewer. Born at the emitter's rate in every step, at times between

@@ -97,6 +97,7 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_quads_release(&d->quads);
     gfx_marks_release(&d->marks);
     gfx_boards_release(&d->boards);
+    gfx_terrain_gpu_release(&d->terrain);
     gfx_geometry_release(&d->geometry);
     gfx_shaders_release(&d->shaders);
     gfx_stream *const streams[] = {&d->view_block,    &d->light_block, &d->instance_block,

@@ -111,12 +111,41 @@ bool gfx_draws_submit(gfx_device *device, gfx_world *world, const gfx_draw_list 
 bool gfx_draws_submit_blended(gfx_device *device, gfx_world *world, const gfx_draw_list *list,
                               uint32_t features);
 
+// ---- terrain (gfx_terrain_draw.c) ----
+
+typedef struct gfx_terrain_maps { // of one terrain: heights, normals
+    GLuint texture[2];
+} gfx_terrain_maps;
+typedef struct gfx_terrain_run { // tiles of one terrain in one view
+    uint32_t terrain, first, count;
+} gfx_terrain_run;
+typedef struct gfx_terrain_list { // one view's runs
+    uint32_t first, count, triangles;
+} gfx_terrain_list;
+typedef struct gfx_terrain_gpu {
+    gfx_growing maps;                // gfx_terrain_maps, in the order of rows
+    gfx_growing levels, tiles, runs; // of the frame: gfx_terrain_levels, gfx_tile, gfx_terrain_run
+    gfx_stream tile_stream, block;
+    GLuint grid, index; // one tile
+    uint64_t world, version;
+} gfx_terrain_gpu;
+// A frame: begin with the camera, one list a view, upload once, submit.
+bool gfx_terrains_wanted(const gfx_world *world);
+void gfx_terrains_begin(gfx_device *device, const gfx_world *world, const gfx_view *view);
+void gfx_terrains_add_view(gfx_device *device, const gfx_world *world, const gfx_view *view,
+                           gfx_terrain_list *list);
+void gfx_terrains_upload(gfx_device *device, const gfx_world *world);
+bool gfx_terrains_submit(gfx_device *device, gfx_world *world, const gfx_terrain_list *list,
+                         const char *fragment, uint32_t features);
+void gfx_terrain_gpu_release(gfx_terrain_gpu *gpu);
+
 // ---- shadows (gfx_shadow.c) ----
 
 enum { GFX_SHADOW_VIEWS = 64 };
 typedef struct gfx_shadow_view {
     gfx_view view;
     gfx_draw_list list;
+    gfx_terrain_list terrain;
     struct gfx_shadow_block block;
     uint64_t key; // of what the layer should hold: matrix and casters
     bool current; // it holds that already
@@ -290,6 +319,7 @@ struct gfx_device {
     gfx_quads quads;
     gfx_marks marks;
     gfx_boards boards;
+    gfx_terrain_gpu terrain;
     gfx_growing places; // of each row's mesh at its level of detail, NULL: not drawn
     uint64_t levels_hash;
     gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists

@@ -90,6 +90,7 @@ typedef struct frame { // one view that is drawn
     gfx_targets *targets;
     gfx_view view;
     gfx_draw_list list;
+    gfx_terrain_list terrain;
     gfx_light_upload lights;
     uint32_t features; // of scene.frag
 } frame;
@@ -155,7 +156,9 @@ static bool pass_clear(frame *f) {
 static bool pass_depth(frame *f) {
     f->device->passes++;
     glNamedFramebufferDrawBuffer(scene_target(f)->name, GL_NONE);
-    bool ok = gfx_draws_submit(f->device, f->world, &f->list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
+    const uint32_t features = GFX_FEATURE_DEPTH_ONLY;
+    bool ok = gfx_draws_submit(f->device, f->world, &f->list, "depth.frag", features) &&
+              gfx_terrains_submit(f->device, f->world, &f->terrain, "depth.frag", features);
     glNamedFramebufferDrawBuffer(scene_target(f)->name, GL_COLOR_ATTACHMENT0);
     return ok;
 }
@@ -187,7 +190,8 @@ static bool pass_scene(frame *f) {
         glDepthFunc(GL_EQUAL);
         glDepthMask(GL_FALSE);
     }
-    return gfx_draws_submit(d, f->world, &f->list, "scene.frag", f->features);
+    return gfx_draws_submit(d, f->world, &f->list, "scene.frag", f->features) &&
+           gfx_terrains_submit(d, f->world, &f->terrain, "scene.frag", f->features);
 }
 
 static bool pass_sky(frame *f) { return gfx_environment_draw(f->device, f->world); }
@@ -307,10 +311,13 @@ static bool draw_world(gfx_device *d, gfx_world *world, gfx_targets *targets) {
     if (ok) {
         gfx_materials_update(d, world);
         gfx_draws_begin(d, world, &f.view);
+        gfx_terrains_begin(d, world, &f.view);
         gfx_draws_add_view(d, world, &f.view, &f.list);
+        gfx_terrains_add_view(d, world, &f.view, &f.terrain);
         gfx_shadows_plan(d, world, &f.view);
         gfx_draws_upload(d, world);
-        world->stats.triangles = f.list.triangles;
+        gfx_terrains_upload(d, world);
+        world->stats.triangles = f.list.triangles + f.terrain.triangles;
     }
     core_stage_end(d->metrics, CORE_STAGE_GFX_CULL);
     if (!ok) {

@@ -129,7 +129,8 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     int debug;                                // GFX_DEBUG_*
     int shadows;                              // GFX_SHADOWS_*
     float shadow_size, shadow_distance, cascades;
-    int msaa, fxaa; // msaa: samples are 1 << msaa
+    float terrain_error; // pixels
+    int msaa, fxaa;      // msaa: samples are 1 << msaa
     float ao, ao_radius, ao_slices, ao_steps;
     float bloom, bloom_threshold, bloom_levels, bloom_spread;
     int auto_exposure;
@@ -160,6 +161,7 @@ struct gfx_world {
     gfx_growing lines;               // struct gfx_line_block
     gfx_growing boards;              // gfx_board
     struct gfx_particles *particles; // NULL until the first emitter
+    struct gfx_terrains *terrains;   // NULL until the first terrain
     gfx_growing faces;               // gfx_face
     float clip[GFX_CLIPS + 1][4];
     uint32_t clips;

@@ -30,6 +30,7 @@
     X(BLOOM, "USE_BLOOM")                                                                          \
     X(AUTO_EXPOSURE, "USE_AUTO_EXPOSURE")                                                          \
     X(GRADE, "USE_GRADE")                                                                          \
+    X(TERRAIN, "USE_TERRAIN")                                                                      \
     X(SMOOTH, "USE_SMOOTH")
 
 #define GFX_FEATURE_INDEX_(id, name) GFX_FEATURE_INDEX_##id,

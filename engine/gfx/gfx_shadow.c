@@ -2,6 +2,7 @@
 // light six. Each view is a layer of one depth array, drawn again only when its matrix or a caster
 // changed.
 #include "gfx/gfx_device_internal.h"
+#include "gfx/gfx_terrain.h"
 
 #include "core/hash.h"
 
@@ -134,6 +135,7 @@ static void add_sun(gfx_shadows *s, const gfx_world *world, const gfx_view *view
     float base = CORE_MAX(view->near_plane, 1.0f);
     int n = (int)(world->settings.cascades + 0.5f);
     interval casters = extent(&world->instances, along);
+    gfx_terrains_extent(world, along, &casters.lo, &casters.hi);
     for (int k = 1; k <= n; ++k) {
         float t = (float)k / (float)n;
         float grown = base * core_powf(far / base, t), equal = base + (far - base) * t;
@@ -229,6 +231,7 @@ void gfx_shadows_plan(gfx_device *d, const gfx_world *world, const gfx_view *vie
         v->current = s->drawn[i] == v->key;
         if (!v->current) {
             gfx_draws_add_view(d, world, &v->view, &v->list);
+            gfx_terrains_add_view(d, world, &v->view, &v->terrain);
         }
     }
 }
@@ -248,7 +251,9 @@ static bool draw_layer(gfx_device *d, gfx_world *world, uint32_t i, size_t strid
                       sizeof(struct gfx_view_block));
     s->drawn[i] = s->view[i].key;
     d->passes++;
-    return gfx_draws_submit(d, world, &s->view[i].list, "depth.frag", GFX_FEATURE_DEPTH_ONLY);
+    const uint32_t features = GFX_FEATURE_DEPTH_ONLY;
+    return gfx_terrains_submit(d, world, &s->view[i].terrain, "depth.frag", features) &&
+           gfx_draws_submit(d, world, &s->view[i].list, "depth.frag", features);
 }
 
 bool gfx_shadows_draw(gfx_device *d, gfx_world *world) {

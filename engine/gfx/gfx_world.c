@@ -4,6 +4,7 @@
 
 #include "gfx/gfx_cluster.h"
 #include "gfx/gfx_particles.h"
+#include "gfx/gfx_terrain.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -69,6 +70,7 @@ void gfx_world_destroy(gfx_world *world) {
     gfx_growing_release(&world->lines);
     gfx_growing_release(&world->boards);
     gfx_particles_destroy(world->particles);
+    gfx_terrains_destroy(world->terrains);
     gfx_growing_release(&world->text);
     gfx_faces_release(&world->faces);
     core_free(world);

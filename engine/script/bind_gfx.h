@@ -4,6 +4,6 @@
 
 #include "script/bind.h"
 
-extern const bind_type bind_light_type, bind_material_type, bind_emitter_type;
+extern const bind_type bind_light_type, bind_material_type, bind_emitter_type, bind_terrain_type;
 
 #endif

@@ -370,6 +370,19 @@ function Emitter:getCount() end
 ---Removes the emitter and its particles.
 function Emitter:destroy() end
 
+---Ground drawn from a field of heights.
+---@class corsac.Terrain
+local Terrain = {}
+
+---Height of the surface above a place, nil beside it.
+---@param x number
+---@param z number
+---@return number? y
+function Terrain:getHeight(x, z) end
+
+---Removes the terrain.
+function Terrain:destroy() end
+
 ---Meshes, skeleton and clips read from a file.
 ---@class corsac.Model
 local Model = {}
@@ -2046,6 +2059,27 @@ function corsac.gfx.drawSprite(path, options) end
 ---@param text string UTF-8; \n starts a line
 ---@param options corsac.gfx.drawText.options where and how
 function corsac.gfx.drawText(text, options) end
+
+---Terrain.
+corsac.gfx = {}
+
+---@class corsac.gfx.newTerrain.options
+---@field heights number[] row by row along +Z, m
+---@field columns integer heights in a row, along +X
+---@field step? number[] from point to point along x and z, m
+---@field position? number[] where the first point is when its height is 0, m
+---@field low? number[] base colour, linear
+---@field high? number[] base colour of what is high
+---@field steep? number[] base colour of what is steep
+---@field heightsBlend? number[] {from, to}: low turns into high, m
+---@field slopesBlend? number[] {from, to}, rise over run: flat turns into steep
+---@field image? string image file that multiplies the colours, stretched over the whole
+---@field roughness? number 0 is a mirror
+
+---Makes ground from a field of heights. It is drawn as finely as gfx.set("terrain_error", pixels) asks for.
+---@param options corsac.gfx.newTerrain.options the terrain
+---@return corsac.Terrain terrain
+function corsac.gfx.newTerrain(options) end
 
 ---Skeletons, clips and state machines.
 corsac.anim = {}

@@ -58,6 +58,9 @@ class GfxScenes(SceneCase):
     def test_menu(self):
         self.golden("menu", "--size", "480x480", "--steps", 12, "--set", "bot=true")
 
+    def test_terrain(self):
+        self.golden("terrain", "--set", "view=0.3", "--set", "points=257")
+
     def test_text(self):
         self.golden("text", "--size", "960x540")
 
