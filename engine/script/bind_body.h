@@ -8,9 +8,10 @@ typedef struct bind_shape_options {
     int shape;
     core_vec3 size, normal, position;
     core_quat rotation;
-    float radius, height, density, friction, restitution;
-    bind_numbers points;
-    bool has_shape, has_size, has_radius, has_height, has_normal, has_points;
+    float radius, height, density, friction, restitution, rolling;
+    bind_numbers points, triangles;
+    bool one_sided;
+    bool has_shape, has_size, has_radius, has_height, has_normal, has_points, has_triangles;
 } bind_shape_options;
 
 typedef struct bind_body_options {
@@ -20,6 +21,7 @@ typedef struct bind_body_options {
     core_vec3 velocity, angular_velocity;
     float linear_damping, angular_damping, gravity_scale;
     const char *layer;              // NULL: "default"
+    const char *locks;              // NULL: none
     int on_contact, on_contact_end; // stack indices, 0: none
 } bind_body_options;
 

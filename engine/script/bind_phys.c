@@ -12,8 +12,9 @@
 // ---- options ----
 
 #define BODY_TYPES  "dynamic|static|kinematic"
-#define SHAPE_TYPES "sphere|box|plane|capsule|cylinder|hull"
-static const char *const shape_names[] = {"sphere", "box", "plane", "capsule", "cylinder", "hull"};
+#define SHAPE_TYPES "sphere|box|plane|capsule|cylinder|hull|mesh"
+static const char *const shape_names[] = {"sphere",   "box",  "plane", "capsule",
+                                          "cylinder", "hull", "mesh"};
 
 #define SHAPE_FIELDS                                                                               \
     {"shape",                                                                                      \
@@ -62,10 +63,18 @@ static const char *const shape_names[] = {"sphere", "box", "plane", "capsule", "
         {"points",                                                                                 \
          BIND_NUMBERS,                                                                             \
          BIND_AT(bind_shape_options, points),                                                      \
-         "hull: its corners, x y z after x y z",                                                   \
+         "hull, mesh: its corners, x y z after x y z",                                             \
          "m",                                                                                      \
          .optional = true,                                                                         \
          BIND_GIVEN(bind_shape_options, has_points)},                                              \
+        {"triangles",                                                                              \
+         BIND_NUMBERS,                                                                             \
+         BIND_AT(bind_shape_options, triangles),                                                   \
+         "mesh: three corners each, counted from 1, counter-clockwise from the front",             \
+         .optional = true,                                                                         \
+         BIND_GIVEN(bind_shape_options, has_triangles)},                                           \
+        {"oneSided", BIND_BOOL, BIND_AT(bind_shape_options, one_sided),                            \
+         "mesh: what comes from behind passes", .optional = true},                                 \
         {"density",         BIND_FLOAT, BIND_AT(bind_shape_options, density),                      \
          "mass per volume", "kg/m^3",   BIND_POSITIVE,                                             \
          .optional = true,  .def = 1000},                                                          \
@@ -77,9 +86,18 @@ static const char *const shape_names[] = {"sphere", "box", "plane", "capsule", "
          BIND_NOT_NEGATIVE,                                                                        \
          .optional = true,                                                                         \
          .def = 0.5},                                                                              \
+        {"restitution",                                                                            \
+         BIND_FLOAT,                                                                               \
+         BIND_AT(bind_shape_options, restitution),                                                 \
+         "share of the speed kept in a bounce",                                                    \
+         NULL,                                                                                     \
+         BIND_BETWEEN,                                                                             \
+         .max = 1,                                                                                 \
+         .optional = true},                                                                        \
     {                                                                                              \
-        "restitution", BIND_FLOAT, BIND_AT(bind_shape_options, restitution),                       \
-            "share of the speed kept in a bounce", NULL, BIND_BETWEEN, .max = 1, .optional = true  \
+        "rolling", BIND_FLOAT, BIND_AT(bind_shape_options, rolling),                               \
+            "sphere: rolling resistance over the radius", NULL, BIND_NOT_NEGATIVE,                 \
+            .optional = true                                                                       \
     }
 
 static const bind_arg shape_fields[] = {
@@ -123,6 +141,10 @@ static const bind_arg shape_fields[] = {
          .optional = true},                                                                        \
         {"gravityScale",      BIND_FLOAT,       BIND_AT(bind_body_options, gravity_scale),         \
          "factor on gravity", .optional = true, .def = 1},                                         \
+        {"locks", BIND_STRING, BIND_AT(bind_body_options, locks),                                  \
+         "world axes along and about which it never moves: any of x y z turnX turnY turnZ, "       \
+         "spaces between",                                                                         \
+         .optional = true},                                                                        \
         {"layer",                                                                                  \
          BIND_STRING,                                                                              \
          BIND_AT(bind_body_options, layer),                                                        \
@@ -154,16 +176,22 @@ static void check_fit(lua_State *L, const char *owner, const bind_shape_options 
     wrong = o->has_radius && !round ? "radius" : wrong;
     wrong = o->has_height && (!round || o->shape == PHYS_SPHERE) ? "height" : wrong;
     wrong = o->has_normal && o->shape != PHYS_PLANE ? "normal" : wrong;
-    wrong = o->has_points && o->shape != PHYS_HULL ? "points" : wrong;
+    wrong = o->has_points && o->shape != PHYS_HULL && o->shape != PHYS_MESH ? "points" : wrong;
+    wrong = o->has_triangles && o->shape != PHYS_MESH ? "triangles" : wrong;
     if (!o->has_shape) {
         bind_error(L,
                    "%s: the body has no shape; expected shape = \"sphere\", \"box\", \"plane\", "
-                   "\"capsule\", \"cylinder\" or \"hull\"",
+                   "\"capsule\", \"cylinder\", \"hull\" or \"mesh\"",
                    owner);
     }
     if (wrong) {
-        static const char *const takes[] = {
-            "radius", "size", "normal", "radius and height", "radius and height", "points"};
+        static const char *const takes[] = {"radius",
+                                            "size",
+                                            "normal",
+                                            "radius and height",
+                                            "radius and height",
+                                            "points",
+                                            "points and triangles"};
         bind_error(L, "%s: a %s has no \"%s\"; it takes %s", owner, shape, wrong, takes[o->shape]);
     }
     if (o->shape == PHYS_HULL && (o->points.count < 12 || o->points.count % 3 != 0)) {
@@ -172,6 +200,34 @@ static void check_fit(lua_State *L, const char *owner, const bind_shape_options 
                    "numbers",
                    owner, (unsigned)o->points.count);
     }
+}
+
+// Of a mesh, on the stack as long as the call; Lua counts corners from 1.
+static const core_soup_data *read_mesh(lua_State *L, const char *owner,
+                                       const bind_shape_options *o) {
+    const bind_numbers *t = &o->triangles;
+    if (o->points.count % 3 != 0 || t->count % 3 != 0 || t->count == 0) {
+        bind_error(L,
+                   "%s: a mesh takes three numbers a corner and three corners a triangle; points "
+                   "has %u numbers, triangles %u",
+                   owner, (unsigned)o->points.count, (unsigned)t->count);
+    }
+    luaL_checkstack(L, 1, "mesh");
+    core_soup_data *soup = lua_newuserdata(L, sizeof *soup + t->count * sizeof(uint32_t));
+    uint32_t *index = (uint32_t *)(soup + 1);
+    for (uint32_t i = 0; i < t->count; i++) {
+        double number = (double)t->items[i];
+        if (!(number >= 1 && number <= o->points.count / 3) || number != (double)(uint32_t)number) {
+            bind_error(L, "%s: triangles[%u] is %g, expected a whole number from 1 to %u", owner,
+                       (unsigned)i + 1, number, (unsigned)o->points.count / 3);
+        }
+        index[i] = (uint32_t)number - 1;
+    }
+    *soup = (core_soup_data){.vertex_count = o->points.count / 3,
+                             .triangle_count = t->count / 3,
+                             .position = o->points.items,
+                             .index = index};
+    return soup;
 }
 
 static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_shape_options *o) {
@@ -188,7 +244,30 @@ static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_sh
     d.density = o->density;
     d.friction = o->friction;
     d.restitution = o->restitution;
+    d.rolling = o->rolling;
+    d.one_sided = o->one_sided;
+    d.mesh = o->shape == PHYS_MESH ? read_mesh(L, owner, o) : NULL;
     return d;
+}
+
+// Words to PHYS_LOCK_ flags.
+static uint32_t read_locks(lua_State *L, const char *owner, const char *words) {
+    static const char *const names[] = {"x", "y", "z", "turnX", "turnY", "turnZ"};
+    uint32_t locks = 0;
+    for (const char *at = words; at != NULL && *(at += strspn(at, " ")) != '\0';) {
+        size_t length = strcspn(at, " "), k = 0;
+        while (k < CORE_COUNT_OF(names) &&
+               (strlen(names[k]) != length || memcmp(names[k], at, length) != 0)) {
+            k++;
+        }
+        if (k == CORE_COUNT_OF(names)) {
+            bind_error(L, "%s: locks are \"%s\", expected words of x y z turnX turnY turnZ", owner,
+                       words);
+        }
+        locks |= 1u << k;
+        at += length;
+    }
+    return locks;
 }
 
 uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_body_options *o,
@@ -200,6 +279,7 @@ uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_b
     out->angular_damping = o->angular_damping;
     out->gravity_scale = o->gravity_scale;
     out->contact_events = o->on_contact || o->on_contact_end;
+    out->locks = read_locks(L, owner, o->locks);
     out->layer = o->layer ? bind_layer(s, L, o->layer) : 0;
     if (o->shapes.count == 0) {
         shapes[0] = read_shape(L, owner, &o->shape);

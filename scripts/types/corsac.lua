@@ -1352,28 +1352,34 @@ function corsac.mods.data(name, data) end
 corsac.scene = {}
 
 ---@class corsac.scene.spawn.options.body.shapes
----@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull"|"mesh" geometry
 ---@field size? number|number[] box: lengths of its edges, m
 ---@field radius? number sphere, capsule, cylinder, m
 ---@field height? number cylinder: whole; capsule: its straight part, m
 ---@field normal? number[] plane: direction of its free side
----@field points? number[] hull: its corners, x y z after x y z, m
+---@field points? number[] hull, mesh: its corners, x y z after x y z, m
+---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
 ---@field restitution? number share of the speed kept in a bounce
+---@field rolling? number sphere: rolling resistance over the radius
 ---@field position? number[] in the body's frame, m
 ---@field rotation? number[]|corsac.AxisAngle in the body's frame
 
 ---@class corsac.scene.spawn.options.body
----@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull"|"mesh" geometry
 ---@field size? number|number[] box: lengths of its edges, m
 ---@field radius? number sphere, capsule, cylinder, m
 ---@field height? number cylinder: whole; capsule: its straight part, m
 ---@field normal? number[] plane: direction of its free side
----@field points? number[] hull: its corners, x y z after x y z, m
+---@field points? number[] hull, mesh: its corners, x y z after x y z, m
+---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
 ---@field restitution? number share of the speed kept in a bounce
+---@field rolling? number sphere: rolling resistance over the radius
 ---@field shapes? corsac.scene.spawn.options.body.shapes[] several shapes in place of one
 ---@field type? "dynamic"|"static"|"kinematic" how it moves
 ---@field velocity? number[] at the start, m/s
@@ -1381,6 +1387,7 @@ corsac.scene = {}
 ---@field linearDamping? number loss of velocity, 1/s
 ---@field angularDamping? number loss of angular velocity, 1/s
 ---@field gravityScale? number factor on gravity
+---@field locks? string world axes along and about which it never moves: any of x y z turnX turnY turnZ, spaces between
 ---@field layer? string name of its collision layer
 ---@field onContact? function called when it begins to touch: itself, the other body, speed of approach (m/s), normal x, y, z towards the other
 ---@field onContactEnd? function called when it touches no longer: itself, the other body (nil when it was destroyed)
@@ -1444,28 +1451,34 @@ function corsac.phys.setGravity(x, y, z) end
 function corsac.phys.getGravity() end
 
 ---@class corsac.phys.newBody.options.shapes
----@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull"|"mesh" geometry
 ---@field size? number|number[] box: lengths of its edges, m
 ---@field radius? number sphere, capsule, cylinder, m
 ---@field height? number cylinder: whole; capsule: its straight part, m
 ---@field normal? number[] plane: direction of its free side
----@field points? number[] hull: its corners, x y z after x y z, m
+---@field points? number[] hull, mesh: its corners, x y z after x y z, m
+---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
 ---@field restitution? number share of the speed kept in a bounce
+---@field rolling? number sphere: rolling resistance over the radius
 ---@field position? number[] in the body's frame, m
 ---@field rotation? number[]|corsac.AxisAngle in the body's frame
 
 ---@class corsac.phys.newBody.options
----@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull" geometry
+---@field shape? "sphere"|"box"|"plane"|"capsule"|"cylinder"|"hull"|"mesh" geometry
 ---@field size? number|number[] box: lengths of its edges, m
 ---@field radius? number sphere, capsule, cylinder, m
 ---@field height? number cylinder: whole; capsule: its straight part, m
 ---@field normal? number[] plane: direction of its free side
----@field points? number[] hull: its corners, x y z after x y z, m
+---@field points? number[] hull, mesh: its corners, x y z after x y z, m
+---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
 ---@field restitution? number share of the speed kept in a bounce
+---@field rolling? number sphere: rolling resistance over the radius
 ---@field shapes? corsac.phys.newBody.options.shapes[] several shapes in place of one
 ---@field type? "dynamic"|"static"|"kinematic" how it moves
 ---@field velocity? number[] at the start, m/s
@@ -1473,6 +1486,7 @@ function corsac.phys.getGravity() end
 ---@field linearDamping? number loss of velocity, 1/s
 ---@field angularDamping? number loss of angular velocity, 1/s
 ---@field gravityScale? number factor on gravity
+---@field locks? string world axes along and about which it never moves: any of x y z turnX turnY turnZ, spaces between
 ---@field layer? string name of its collision layer
 ---@field onContact? function called when it begins to touch: itself, the other body, speed of approach (m/s), normal x, y, z towards the other
 ---@field onContactEnd? function called when it touches no longer: itself, the other body (nil when it was destroyed)
