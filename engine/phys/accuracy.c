@@ -261,7 +261,7 @@ static double depth_mesh(const solid *a, const solid *mesh) {
     phys_mesh_walk_begin(&walk, mesh->mesh, &box);
     for (uint32_t i; (i = phys_mesh_walk_next(&walk)) != PHYS_MESH_NONE;) {
         for (uint32_t k = 0; k < 3; k++) {
-            corner[k] = mesh->mesh->vertex[mesh->mesh->index[3 * (size_t)i + k]];
+            corner[k] = phys_mesh_corner(mesh->mesh, i, k);
         }
         normal[0] =
             core_v3_cross(core_v3_sub(corner[1], corner[0]), core_v3_sub(corner[2], corner[0]));

@@ -1,7 +1,7 @@
 // What particles of a cloth may touch in a step: for each the planes of the two nearest bodies,
 // which move with them. A particle that is outside of a convex shape stays on its side of the plane
 // through the closest point, so that no speed takes it through.
-#include "phys/world.h"
+#include "phys/mesh_internal.h"
 
 #define SHAPES 256u  // around one cloth; farther ones of a heap beyond that are not felt
 #define SLACK  0.02f // m: particles look this far beyond their way
@@ -133,36 +133,61 @@ static bool meets(const core_aabb *b, core_vec3 p, float reach) {
            p.y <= b->max.y + reach && p.z >= b->min.z - reach && p.z <= b->max.z + reach;
 }
 
+// A body as the particles of one cloth see it in this step.
+typedef struct touched {
+    phys_geom geom;
+    core_aabb bounds;
+    core_vec3 v, spin, center;
+    float radius, grip; // of the particles; friction of both
+    uint32_t row;
+} touched;
+
+static void offer(phys_cloth_work *k, uint32_t i, const touched *t, core_vec3 p, core_vec3 n,
+                  float gap) {
+    core_vec3 foot = core_v3_mad(p, n, -(gap + t->radius));
+    core_vec3 u = core_v3_add(t->v, core_v3_cross(t->spin, core_v3_sub(foot, t->center)));
+    offer_plane(k, i, n, core_v3_dot(n, p) - gap, gap, u, t->grip, t->row);
+}
+
+static void touch_particle(phys_cloth_work *k, uint32_t i, const touched *t, float dt) {
+    core_vec3 p = phys_get3(k->x[0], k->x[1], k->x[2], i), n;
+    core_vec3 pv = phys_get3(k->v[0], k->v[1], k->v[2], i);
+    float reach = SLACK + core_v3_length(core_v3_sub(pv, t->v)) * dt;
+    if (k->held[i] != 0.0f || !meets(&t->bounds, p, t->radius + reach)) {
+        return;
+    }
+    if (t->geom.type != PHYS_MESH) {
+        float gap = distance(&t->geom, p, &n) - t->radius;
+        if (gap <= reach) {
+            offer(k, i, t, p, n, gap);
+        }
+        return;
+    }
+    phys_geom ball =
+        phys_geom_make(PHYS_SPHERE, p, core_quat_identity(), core_v3(0, 0, 0), t->radius);
+    core_vec3 to[PHYS_PARTS], on[PHYS_PARTS];
+    float gap[PHYS_PARTS];
+    uint32_t count = phys_mesh_touches(&ball, &t->geom, reach, to, on, gap);
+    for (uint32_t j = 0; j < count; j++) {
+        offer(k, i, t, p, core_v3_scale(to[j], -1.0f), gap[j]);
+    }
+}
+
 static void touch_shape(phys_world *w, phys_cloth_work *k, uint32_t shape, float dt) {
     const phys_bodies *b = &w->bodies;
     const phys_cloths *all = &w->cloths;
-    uint32_t row = phys_slot_row(&b->set, w->shapes.body[shape]);
-    phys_geom g = phys_shape_geom(w, shape);
-    core_aabb bounds = phys_geom_bounds(&g);
-    bool moves = phys_moves(b, row);
-    core_vec3 v = {0, 0, 0}, spin = {0, 0, 0}, center = phys_get3(b->cx, b->cy, b->cz, row);
-    if (moves) {
-        v = phys_get3(b->vx, b->vy, b->vz, row);
-        spin = phys_get3(b->wx, b->wy, b->wz, row);
+    touched t = {.geom = phys_shape_geom(w, shape), .radius = all->radius[k->cloth]};
+    t.bounds = phys_geom_bounds(&t.geom);
+    t.row = phys_slot_row(&b->set, w->shapes.body[shape]);
+    t.center = phys_get3(b->cx, b->cy, b->cz, t.row);
+    t.grip = core_sqrtf(all->friction[k->cloth] * w->shapes.friction[shape]);
+    if (phys_moves(b, t.row)) {
+        t.v = phys_get3(b->vx, b->vy, b->vz, t.row);
+        t.spin = phys_get3(b->wx, b->wy, b->wz, t.row);
     }
-    float radius = all->radius[k->cloth];
-    float grip = core_sqrtf(all->friction[k->cloth] * w->shapes.friction[shape]);
     for (uint32_t r = 0; r < k->rows; r++) {
         for (uint32_t c = 0; c < k->columns; c++) {
-            uint32_t i = r * k->stride + c;
-            core_vec3 p = phys_get3(k->x[0], k->x[1], k->x[2], i), n;
-            core_vec3 pv = phys_get3(k->v[0], k->v[1], k->v[2], i);
-            float reach = radius + SLACK + core_v3_length(core_v3_sub(pv, v)) * dt;
-            if (k->held[i] != 0.0f || !meets(&bounds, p, reach)) {
-                continue;
-            }
-            float gap = distance(&g, p, &n) - radius;
-            if (gap + radius > reach) {
-                continue;
-            }
-            core_vec3 foot = core_v3_mad(p, n, -(gap + radius));
-            core_vec3 u = core_v3_add(v, core_v3_cross(spin, core_v3_sub(foot, center)));
-            offer_plane(k, i, n, core_v3_dot(n, p) - gap, gap, u, grip, row);
+            touch_particle(k, r * k->stride + c, &t, dt);
         }
     }
 }

@@ -28,6 +28,9 @@ static bool check_materials(const phys_shape_desc *d) {
 }
 
 bool phys_mesh_check(const phys_shape_desc *d) {
+    if (d->heights != NULL) {
+        return phys_heights_check(d) && check_materials(d);
+    }
     const core_soup_data *s = d->mesh;
     if (s == NULL || s->triangle_count == 0 || s->position == NULL || s->index == NULL) {
         return core_fail("phys shape mesh: no triangles given, expected at least one");
@@ -334,6 +337,10 @@ static void build_order(phys_mesh *m) {
 }
 
 bool phys_mesh_build(phys_mesh *m, const phys_shape_desc *d) {
+    if (d->heights != NULL) {
+        phys_heights_build(m, d);
+        return true;
+    }
     *m = (phys_mesh){.one_sided = d->one_sided, .material_count = d->material_count};
     const core_soup_data *s = d->mesh;
     m->vertex = core_alloc((s->vertex_count + 1) * sizeof *m->vertex);
@@ -368,10 +375,15 @@ void phys_mesh_release(phys_mesh *m) {
     core_free(m->area);
     core_free(m->material);
     core_free(m->node);
+    core_free(m->height);
+    core_free(m->cell);
     *m = (phys_mesh){0};
 }
 
 size_t phys_mesh_bytes(const phys_mesh *m) {
+    if (m->height != NULL) {
+        return phys_heights_bytes(m);
+    }
     size_t each = 7 * sizeof(uint32_t) + (m->area != NULL ? 1 : 0);
     return m->vertex_count * sizeof *m->vertex + m->triangle_count * each +
            m->node_count * sizeof *m->node + m->material_count * sizeof *m->material;
@@ -397,7 +409,13 @@ static bool node_meets(const phys_mesh_node *n, const phys_box *b) {
 }
 
 uint32_t phys_mesh_walk_next(phys_mesh_walk *w) {
-    while (w->triangle == w->end) {
+    for (;;) {
+        while (w->triangle != w->end) {
+            uint32_t t = w->triangle++;
+            if (phys_mesh_there(w->mesh, t)) {
+                return t;
+            }
+        }
         if (w->depth == 0) {
             return PHYS_MESH_NONE;
         }
@@ -413,5 +431,4 @@ uint32_t phys_mesh_walk_next(phys_mesh_walk *w) {
             w->stack[w->depth++] = n->first;
         }
     }
-    return w->triangle++;
 }

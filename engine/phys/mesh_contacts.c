@@ -19,12 +19,9 @@ phys_moving phys_moving_seen_from(const phys_moving *m, const phys_geom *frame) 
     return o;
 }
 
-static core_vec3 vertex_of(const phys_mesh *m, uint32_t t, uint32_t k) {
-    return m->vertex[m->index[3 * (size_t)t + k]];
-}
-
 static core_vec3 triangle_normal(const phys_mesh *m, uint32_t t) {
-    core_vec3 a = vertex_of(m, t, 0), b = vertex_of(m, t, 1), c = vertex_of(m, t, 2);
+    core_vec3 a = phys_mesh_corner(m, t, 0), b = phys_mesh_corner(m, t, 1),
+              c = phys_mesh_corner(m, t, 2);
     double u[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z};
     double v[3] = {(double)c.x - a.x, (double)c.y - a.y, (double)c.z - a.z};
     double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2];
@@ -34,11 +31,15 @@ static core_vec3 triangle_normal(const phys_mesh *m, uint32_t t) {
 
 // Normal of the triangle over edge k, turned so that its front goes on where t's ends.
 static core_vec3 normal_over(const phys_mesh *m, uint32_t t, uint32_t k) {
-    uint32_t other = m->beyond[3 * (size_t)t + k];
+    uint32_t other =
+        m->height != NULL ? phys_heights_beyond(m, t, k) : m->beyond[3 * (size_t)t + k];
     if (other == PHYS_MESH_NONE) {
         return core_v3(0, 0, 0);
     }
     core_vec3 n = triangle_normal(m, other);
+    if (m->height != NULL) { // all look up
+        return n;
+    }
     uint32_t a = m->index[3 * (size_t)t + k];
     uint32_t b = m->index[3 * (size_t)t + (k == 2 ? 0 : k + 1)];
     const uint32_t *i = m->index + 3 * (size_t)other;
@@ -50,8 +51,11 @@ static core_vec3 normal_over(const phys_mesh *m, uint32_t t, uint32_t k) {
 bool phys_mesh_patch(const phys_mesh *m, uint32_t t, core_vec3 center, float reach,
                      phys_patch *out) {
     core_vec3 corner[3], over[3];
+    if (!phys_mesh_there(m, t)) {
+        return false;
+    }
     for (uint32_t k = 0; k < 3; k++) {
-        corner[k] = vertex_of(m, t, k);
+        corner[k] = phys_mesh_corner(m, t, k);
         over[k] = normal_over(m, t, k);
     }
     out->id = t;
@@ -134,7 +138,7 @@ void phys_mesh_contacts(const phys_mesh *mesh, const phys_moving *shape, float m
         if (fast && !touches(&m)) {
             sweep_patch(&near, &p, dt, &m);
         }
-        phys_parts_add(out, &m, mesh->area != NULL ? mesh->area[t] : 0);
+        phys_parts_add(out, &m, phys_mesh_area(mesh, t));
     }
     for (uint32_t k = 0; k < out->count; k++) {
         for (uint32_t i = 0; i < out->m[k].count; i++) {
@@ -361,8 +365,9 @@ phys_geom_ray_hit phys_mesh_ray(const phys_geom *mesh, core_vec3 o, core_vec3 d,
     for (const phys_mesh_node *n; (n = line_next(&walk, (float)best)) != NULL;) {
         for (uint32_t k = n->first; k < n->first + n->count; k++) {
             double t;
-            if (!ray_triangle(&ray, vertex_of(m, k, 0), vertex_of(m, k, 1), vertex_of(m, k, 2),
-                              m->one_sided, &t) ||
+            if (!phys_mesh_there(m, k) ||
+                !ray_triangle(&ray, phys_mesh_corner(m, k, 0), phys_mesh_corner(m, k, 1),
+                              phys_mesh_corner(m, k, 2), m->one_sided, &t) ||
                 !(t < best || (t == best && (!hit.hit || k < *triangle)))) {
                 continue;
             }

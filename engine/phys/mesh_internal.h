@@ -29,6 +29,11 @@ typedef struct phys_mesh {
     phys_material *material; // [material_count] by area
     phys_mesh_node *node;    // [node_count]
     bool one_sided;
+    // A field of heights has these instead of vertex, index, beyond, origin and area; numbers of
+    // triangles that are not there belong to the border and to holes.
+    core_heights_data heights;
+    float *height; // [columns * rows], NULL: a mesh of triangles
+    uint8_t *cell; // [(columns - 1) * (rows - 1)] area or PHYS_HOLE, or NULL
 } phys_mesh;
 
 // False + core_fail for no triangles, indices out of range, places that are not finite or beyond
@@ -39,6 +44,31 @@ bool phys_mesh_build(phys_mesh *mesh, const phys_shape_desc *desc);
 void phys_mesh_release(phys_mesh *mesh);
 size_t phys_mesh_bytes(const phys_mesh *mesh);
 core_aabb phys_mesh_bounds(const phys_mesh *mesh); // own frame
+
+// heights.c
+bool phys_heights_check(const phys_shape_desc *desc);
+uint64_t phys_heights_hash(const phys_shape_desc *desc);
+void phys_heights_build(phys_mesh *mesh, const phys_shape_desc *desc); // of one that passed
+size_t phys_heights_bytes(const phys_mesh *mesh);
+bool phys_heights_there(const phys_mesh *mesh, uint32_t triangle);
+core_vec3 phys_heights_corner(const phys_mesh *mesh, uint32_t triangle, uint32_t k);
+uint32_t phys_heights_beyond(const phys_mesh *mesh, uint32_t triangle, uint32_t k);
+uint8_t phys_heights_area(const phys_mesh *mesh, uint32_t triangle);
+uint32_t phys_heights_origin(const phys_mesh *mesh, uint32_t triangle); // cell * 2 + half
+
+static inline bool phys_mesh_there(const phys_mesh *m, uint32_t t) {
+    return m->height == NULL || phys_heights_there(m, t);
+}
+static inline core_vec3 phys_mesh_corner(const phys_mesh *m, uint32_t t, uint32_t k) {
+    return m->height != NULL ? phys_heights_corner(m, t, k)
+                             : m->vertex[m->index[3 * (size_t)t + k]];
+}
+static inline uint8_t phys_mesh_area(const phys_mesh *m, uint32_t t) {
+    return m->height != NULL ? phys_heights_area(m, t) : m->area != NULL ? m->area[t] : 0;
+}
+static inline uint32_t phys_mesh_origin(const phys_mesh *m, uint32_t t) {
+    return m->height != NULL ? phys_heights_origin(m, t) : m->origin[t];
+}
 
 // Walks the leaves whose box meets the one asked for, grown by nothing, in the tree's order.
 typedef struct phys_mesh_walk {

@@ -70,7 +70,7 @@ static void clear_part(phys_world *w, uint32_t i, uint32_t row) {
 static void put_material(phys_world *w, uint32_t i, uint32_t row, const phys_mesh *mesh,
                          uint8_t area) {
     uint32_t sa = phys_slot_row(&w->shapes.set, w->mesh_pairs.sa[i]);
-    if (mesh->area == NULL || area >= mesh->material_count) {
+    if ((mesh->area == NULL && mesh->height == NULL) || area >= mesh->material_count) {
         return;
     }
     float friction, restitution;

@@ -10,6 +10,10 @@ typedef struct phys_mesh_entry {
 } phys_mesh_entry;
 
 static uint64_t hash_soup(const phys_shape_desc *d) {
+    if (d->heights != NULL) {
+        uint64_t h = phys_heights_hash(d);
+        return core_hash(d->materials, d->material_count * sizeof *d->materials, h);
+    }
     const core_soup_data *s = d->mesh;
     uint64_t h = core_hash(s->position, 3 * (size_t)s->vertex_count * sizeof(float), d->one_sided);
     h = core_hash(s->index, 3 * (size_t)s->triangle_count * sizeof(uint32_t), h);

@@ -67,6 +67,7 @@ typedef struct phys_material {
     float restitution; // [0, 1]
 } phys_material;
 
+enum { PHYS_HOLE = 255 }; // area of a cell of heights that is not there
 typedef struct phys_shape_desc {
     phys_shape_type type;
     core_vec3 half;      // box: half extents > 0 (m)
@@ -78,6 +79,11 @@ typedef struct phys_shape_desc {
     // Mesh: of static bodies only, copied; at most 2^24 triangles, places within 1e6 m. Neighbours
     // are found by equal corners. Triangles without an area are left out.
     const core_soup_data *mesh;
+    // Mesh: a field of heights instead, copied: at most 2^14 points along a side. cells: area of
+    // each cell, row by row [(rows - 1) * (columns - 1)], or PHYS_HOLE where there is none; NULL:
+    // all 0.
+    const core_heights_data *heights;
+    const uint8_t *cells;
     bool one_sided;                 // mesh: what comes from behind passes; default: both sides stop
     const phys_material *materials; // mesh: [material_count] by the soup's area; areas beyond, or
     uint32_t material_count;        // without one, have the material below
@@ -260,7 +266,9 @@ typedef struct phys_shape_view {
     const core_vec3 *vertex;    // [vertex_count] hull, mesh
     const uint32_t *face_begin; // [face_count + 1] hull
     const uint32_t *loop;       // [face_begin[face_count]] hull
-    const uint32_t *index;      // [3 * triangle_count] mesh
+    const uint32_t *index;      // [3 * triangle_count] mesh; NULL: a field of heights, the next two
+    const core_heights_data *heights;
+    const uint8_t *cells; // as in the description, may be NULL
 } phys_shape_view;
 // Shapes of all bodies; rows 0 .. count - 1, in an order that only edits of the world change.
 uint32_t phys_world_shape_count(const phys_world *world);

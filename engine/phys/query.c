@@ -116,9 +116,10 @@ bool phys_world_ray(phys_world *w, core_vec3 from, core_vec3 way, const phys_fil
         uint32_t triangle = 0;
         phys_geom_ray_hit h = ray_shape(&g, from, way, 1.0f, &triangle);
         if (h.hit && nearer(w, h.t, row, out)) {
-            *out = (phys_hit){true,    core_columns_handle(&w->bodies.set, row),
-                              h.point, h.normal,
-                              h.t,     g.mesh != NULL ? g.mesh->origin[triangle] : UINT32_MAX};
+            *out = (phys_hit){
+                true,    core_columns_handle(&w->bodies.set, row),
+                h.point, h.normal,
+                h.t,     g.mesh != NULL ? phys_mesh_origin(g.mesh, triangle) : UINT32_MAX};
         }
     }
     core_arena_rewind(&w->scratch, mark);

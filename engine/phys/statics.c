@@ -64,7 +64,10 @@ bool phys_world_shape(const phys_world *w, uint32_t row, phys_shape_view *out) {
     out->radius = g.radius;
     out->half_height = g.type == PHYS_CAPSULE || g.type == PHYS_CYLINDER ? g.half_height : 0.0f;
     out->bounds = phys_geom_bounds(&g);
-    if (g.mesh != NULL) {
+    if (g.mesh != NULL && g.mesh->height != NULL) {
+        out->heights = &g.mesh->heights;
+        out->cells = g.mesh->cell;
+    } else if (g.mesh != NULL) {
         out->vertex_count = g.mesh->vertex_count;
         out->triangle_count = g.mesh->triangle_count;
         out->vertex = g.mesh->vertex;
@@ -190,7 +193,31 @@ static void hull_triangles(sink *s) {
     }
 }
 
+static void heights_triangles(sink *s) {
+    const core_heights_data *h = s->shape->heights;
+    for (uint32_t z = 0; z + 1 < h->rows; z++) {
+        for (uint32_t x = 0; x + 1 < h->columns; x++) {
+            core_vec3 p[4];
+            for (uint32_t k = 0; k < 4; k++) {
+                uint32_t i = x + (k & 1u), j = z + (k >> 1);
+                p[k] = core_v3_add(h->origin, core_v3(h->step_x * (float)i,
+                                                      h->height[(size_t)j * h->columns + i],
+                                                      h->step_z * (float)j));
+            }
+            const uint8_t *cells = s->shape->cells;
+            if (cells == NULL || cells[(size_t)z * (h->columns - 1) + x] != PHYS_HOLE) {
+                emit(s, p[0], p[2], p[3]);
+                emit(s, p[0], p[3], p[1]);
+            }
+        }
+    }
+}
+
 static void mesh_triangles(sink *s) {
+    if (s->shape->heights != NULL) {
+        heights_triangles(s);
+        return;
+    }
     const phys_shape_view *v = s->shape;
     for (uint32_t t = 0; t < v->triangle_count; t++) {
         const uint32_t *i = v->index + 3 * (size_t)t;
