@@ -33,6 +33,7 @@ typedef struct gfx_stats { // of the last frame
     uint32_t clusters, light_refs;
     uint32_t capped; // cells with more lights than cell_cap
     uint32_t draws, programs, triangles;
+    uint32_t uploads; // instances whose data went to the GPU: those that changed
 } gfx_stats;
 gfx_stats gfx_world_stats(const gfx_world *world);
 // Settings by name, as --set gfx.NAME=VALUE reaches them. False + core_fail naming the nearest name

@@ -98,11 +98,11 @@ void gfx_device_destroy(gfx_device *device) {
     gfx_marks_release(&d->marks);
     gfx_boards_release(&d->boards);
     gfx_terrain_gpu_release(&d->terrain);
+    gfx_instance_gpu_release(&d->instances);
     gfx_geometry_release(&d->geometry);
     gfx_shaders_release(&d->shaders);
-    gfx_stream *const streams[] = {&d->view_block,    &d->light_block, &d->instance_block,
-                                   &d->bone_block,    &d->draw_block,  &d->cluster_offsets,
-                                   &d->cluster_lists, &d->cluster_grid};
+    gfx_stream *const streams[] = {&d->view_block,      &d->light_block,   &d->draw_block,
+                                   &d->cluster_offsets, &d->cluster_lists, &d->cluster_grid};
     for (size_t i = 0; i < CORE_COUNT_OF(streams); ++i) {
         gfx_stream_release(streams[i]);
     }

@@ -105,11 +105,23 @@ typedef struct gfx_draw_list { // one view's part of the frame's batches: opaque
 void gfx_draws_begin(gfx_device *device, const gfx_world *world, const gfx_view *view);
 void gfx_draws_add_view(gfx_device *device, const gfx_world *world, const gfx_view *view,
                         gfx_draw_list *list);
-void gfx_draws_upload(gfx_device *device, const gfx_world *world);
+void gfx_draws_upload(gfx_device *device, gfx_world *world);
 bool gfx_draws_submit(gfx_device *device, gfx_world *world, const gfx_draw_list *list,
                       const char *fragment, uint32_t features);
 bool gfx_draws_submit_blended(gfx_device *device, gfx_world *world, const gfx_draw_list *list,
                               uint32_t features);
+
+// ---- instances (gfx_instance_upload.c) ----
+
+typedef struct gfx_instance_gpu {
+    gfx_stream instances, bones;
+    uint64_t key[GFX_FRAMES], version[GFX_FRAMES]; // what each turn's segment holds
+    uint64_t layout;                               // that first_bone was made for
+    gfx_growing first_bone;                        // u32 a row
+    uint32_t bone_count;
+} gfx_instance_gpu;
+void gfx_instances_upload(gfx_device *device, gfx_world *world);
+void gfx_instance_gpu_release(gfx_instance_gpu *gpu);
 
 // ---- terrain (gfx_terrain_draw.c) ----
 
@@ -304,7 +316,7 @@ struct gfx_device {
     bool samples_warned;
     GLuint empty_vao, dfg_texture;
     gfx_geometry geometry;
-    gfx_stream view_block, light_block, instance_block, bone_block, draw_block, row_block;
+    gfx_stream view_block, light_block, draw_block, row_block;
     gfx_stream cluster_offsets, cluster_lists, cluster_grid;
     gfx_cluster_gpu cluster_gpu;
     gfx_clusters clusters;
@@ -320,6 +332,7 @@ struct gfx_device {
     gfx_marks marks;
     gfx_boards boards;
     gfx_terrain_gpu terrain;
+    gfx_instance_gpu instances;
     gfx_growing places; // of each row's mesh at its level of detail, NULL: not drawn
     uint64_t levels_hash;
     gfx_growing visible, keys, scratch, rows, commands, batches; // of the draw lists

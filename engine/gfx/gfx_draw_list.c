@@ -202,17 +202,6 @@ void gfx_draws_add_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     }
 }
 
-static void write_instance(const gfx_world *world, uint32_t row, uint32_t bone,
-                           struct gfx_instance_block *out) {
-    const gfx_instances *s = &world->instances;
-    memcpy(out->row0, s->rows[row].m, sizeof s->rows[row]);
-    memcpy(out->color, &s->color[row], sizeof out->color);
-    uint32_t material = core_columns_row(&world->materials.set, s->material[row]);
-    out->index[0] = material == CORE_NO_ROW ? 0 : material + 1; // 0: the default
-    out->index[1] = bone;
-    out->index[2] = out->index[3] = 0;
-}
-
 static void copy_stream(gfx_device *d, gfx_stream *stream, const gfx_growing *from, size_t size) {
     size_t bytes = from->count * size;
     void *to = gfx_stream_begin(stream, bytes, d->frame);
@@ -221,29 +210,10 @@ static void copy_stream(gfx_device *d, gfx_stream *stream, const gfx_growing *fr
     }
 }
 
-void gfx_draws_upload(gfx_device *d, const gfx_world *world) {
-    const gfx_instances *s = &world->instances;
-    uint32_t count = core_columns_count(&s->set), bones = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        bones += s->palette[i] ? s->palette_bones[i] : 0;
-    }
-    struct gfx_instance_block *instance =
-        gfx_stream_begin(&d->instance_block, count * sizeof *instance, d->frame);
-    gfx_rows *bone = gfx_stream_begin(&d->bone_block, bones * sizeof *bone, d->frame);
-    uint32_t at = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        write_instance(world, i, at, &instance[i]);
-        if (s->palette[i]) {
-            memcpy(bone + at, s->palette[i], s->palette_bones[i] * sizeof *bone);
-            at += s->palette_bones[i];
-        }
-    }
+void gfx_draws_upload(gfx_device *d, gfx_world *world) {
+    gfx_instances_upload(d, world);
     copy_stream(d, &d->row_block, &d->rows, sizeof(uint32_t));
     copy_stream(d, &d->draw_block, &d->commands, sizeof(gfx_draw_command));
-    gfx_stream_bind(&d->instance_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_INSTANCES,
-                    count * sizeof *instance, d->frame);
-    gfx_stream_bind(&d->bone_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_BONES, bones * sizeof *bone,
-                    d->frame);
     gfx_stream_bind(&d->row_block, GL_SHADER_STORAGE_BUFFER, GFX_SSBO_ROWS,
                     d->rows.count * sizeof(uint32_t), d->frame);
 }

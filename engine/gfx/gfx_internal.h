@@ -42,7 +42,8 @@ CORE_COLUMNS_DECLARE(gfx_lights, GFX_LIGHT_COLUMNS)
     X(float, cx, 0)                                                                                \
     X(float, cy, 0)                                                                                \
     X(float, cz, 0)                                                                                \
-    X(float, cr, 0) /* bounding sphere, world */                                                   \
+    X(float, cr, 0)         /* bounding sphere, world */                                           \
+    X(uint64_t, changed, 0) /* row_version of the last change */                                   \
     X(gfx_rgba, color, 0)                                                                          \
     X(gfx_mesh, mesh, 0)                                                                           \
     X(gfx_material, material, 0)                                                                   \
@@ -150,6 +151,8 @@ struct gfx_world {
     gfx_materials materials;
     gfx_mesh builtin[GFX_BUILTIN_MESHES];
     uint64_t mesh_version, material_version, instance_version; // raised by every change
+    uint64_t row_version;    // of instances: by every change of any column
+    uint64_t palette_layout; // by every change of how many bones a row has
     gfx_settings settings;
     gfx_camera camera;
     bool camera_set;

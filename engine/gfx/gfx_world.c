@@ -355,6 +355,8 @@ gfx_instance gfx_instance_create(gfx_world *world, const gfx_instance_desc *desc
     gfx_instances *s = &world->instances;
     s->mesh[i] = desc->mesh;
     s->material[i] = desc->material;
+    s->changed[i] = ++world->row_version;
+    world->palette_layout++; // its row had none
     s->color[i] = zero ? (gfx_rgba){1.0f, 1.0f, 1.0f, 1.0f} : (gfx_rgba){c[0], c[1], c[2], c[3]};
     gfx_instance_set_transform(world, instance, core_v3(0.0f, 0.0f, 0.0f), core_quat_identity(),
                                core_v3(1.0f, 1.0f, 1.0f));
@@ -366,10 +368,16 @@ bool gfx_instance_destroy(gfx_world *world, gfx_instance instance) {
     if (!row_of(&world->instances.set, instance, "gfx_instance_destroy", &i)) {
         return false;
     }
-    core_free(world->instances.palette[i]);
+    gfx_instances *s = &world->instances;
+    core_free(s->palette[i]);
     world->instance_version++;
-    world->heap_bytes -= world->instances.palette_bones[i] * sizeof(gfx_rows);
-    return core_columns_remove(&world->instances.set, instance, NULL, NULL);
+    world->palette_layout++;
+    world->heap_bytes -= s->palette_bones[i] * sizeof(gfx_rows);
+    bool ok = core_columns_remove(&s->set, instance, NULL, NULL);
+    if (i < core_columns_count(&s->set)) {
+        s->changed[i] = ++world->row_version; // another took its row
+    }
+    return ok;
 }
 
 bool gfx_instance_set_color(gfx_world *world, gfx_instance instance, float r, float g, float b,
@@ -378,7 +386,11 @@ bool gfx_instance_set_color(gfx_world *world, gfx_instance instance, float r, fl
     if (!row_of(&world->instances.set, instance, "gfx_instance_set_color", &i)) {
         return false;
     }
-    world->instances.color[i] = (gfx_rgba){r, g, b, a};
+    gfx_rgba color = {r, g, b, a};
+    if (memcmp(&color, &world->instances.color[i], sizeof color) != 0) {
+        world->instances.color[i] = color;
+        world->instances.changed[i] = ++world->row_version;
+    }
     return true;
 }
 
@@ -452,6 +464,7 @@ bool gfx_instance_set_transform(gfx_world *world, gfx_instance instance, core_ve
         return true; // shadow maps of things at rest stay as they are
     }
     world->instances.rows[i] = rows;
+    world->instances.changed[i] = ++world->row_version;
     world->instance_version++;
     update_bounds(world, i, true);
     return true;
@@ -470,13 +483,20 @@ bool gfx_instance_set_palette(gfx_world *world, gfx_instance instance, const flo
         return core_fail("gfx_instance_set_palette: %u matrices, the mesh has %u bones", count,
                          bones);
     }
+    bool same = s->palette_bones[i] == count &&
+                memcmp(s->palette[i], rows3x4, count * sizeof(gfx_rows)) == 0;
+    if (same) {
+        return true;
+    }
     if (s->palette_bones[i] != count) {
         size_t old = s->palette_bones[i] * sizeof(gfx_rows), bytes = count * sizeof(gfx_rows);
         s->palette[i] = core_realloc(s->palette[i], old, bytes);
         s->palette_bones[i] = count;
+        world->palette_layout++;
         world->heap_bytes += bytes - old;
     }
     memcpy(s->palette[i], rows3x4, count * sizeof(gfx_rows));
+    s->changed[i] = ++world->row_version;
     world->instance_version++;
     update_bounds(world, i, false);
     return true;
