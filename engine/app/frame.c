@@ -12,6 +12,8 @@ bool app_device_open(app_run *r, bool window) {
     }
     gfx_device_desc desc = gfx_device_desc_default();
     desc.window = window;
+    // A picture that is asked for shows its images, however slowly they are read.
+    desc.background = window && !r->opt->shot_count && !r->opt->video;
     desc.width = r->width;
     desc.height = r->height;
     desc.title = r->conf.title[0] ? r->conf.title : "corsac";

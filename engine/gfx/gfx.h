@@ -71,6 +71,7 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //   shadow_size  texels of a map's side, 16..8192, default 1024
 //   shadow_distance  m of view depth that a sun's cascades cover, default 80
 //   cascades     of a sun, 1..4, default 3
+//   upload_budget  MiB of images read in the background that go to the GPU a frame, default 4
 //   debug        off | normals | depth | lights (in each cell: blue none, red 32) | clusters |
 //                overdraw
 //   prepass      on | off: depth first, so that no hidden fragment is shaded
@@ -364,6 +365,9 @@ typedef struct gfx_device_desc {
     core_vfs *vfs; // shaders are read from "shaders/", images from anywhere; borrowed
     core_metrics *metrics;
     bool float_target; // RGBA32F HDR target (tests)
+    // Images are read by a thread of their own and uploaded in parts: grey until they are there. A
+    // device without it reads at first use, so that a frame is the same whenever it is drawn.
+    bool background;
     uint32_t cookie;
 } gfx_device_desc;
 gfx_device_desc gfx_device_desc_default(void);
@@ -372,8 +376,8 @@ gfx_device *gfx_device_create(const gfx_device_desc *desc);
 void gfx_device_destroy(gfx_device *device);
 // Draws the world; false + core_fail on shader or GL errors (file and line).
 bool gfx_device_render(gfx_device *device, gfx_world *world);
-// Builds shaders whose files changed since anew (cheap when none did). A shader that fails keeps
-// its old form: false + core_fail with its file and line.
+// Builds shaders and reads images whose files changed since anew (cheap when none did). What fails
+// keeps its old form: false + core_fail with its file, and a shader's line.
 bool gfx_device_reload(gfx_device *device);
 // The frame last rendered: RGBA8 sRGB, rows top to bottom, width*height*4 bytes.
 bool gfx_device_read(gfx_device *device, uint8_t *rgba);
@@ -425,6 +429,8 @@ bool gfx_device_software(const gfx_device *device);
 typedef struct gfx_device_use {
     uint32_t passes, shader_variants;
     size_t target_bytes;
+    uint32_t loading;      // images on their way
+    size_t uploaded_bytes; // of images read in the background, last frame
 } gfx_device_use;
 gfx_device_use gfx_device_used(const gfx_device *device);
 

@@ -76,6 +76,7 @@ gfx_device *gfx_device_create(const gfx_device_desc *desc) {
     d->vfs = d->shaders.vfs = desc->vfs;
     d->metrics = desc->metrics;
     d->float_target = desc->float_target;
+    d->background = desc->background;
     set_up_context(d);
     if (!make_targets(d, desc->width, desc->height)) {
         gfx_device_destroy(d);
@@ -175,13 +176,15 @@ void gfx_device_set_cursor(gfx_device *device, gfx_cursor cursor) {
 
 bool gfx_device_reload(gfx_device *device) {
     return device->context->table->make_current(device->context) &&
-           gfx_shaders_reload(&device->shaders);
+           (int)gfx_shaders_reload(&device->shaders) + (int)gfx_textures_reload(device) == 2;
 }
 
 const char *gfx_device_name(const gfx_device *device) { return device->name; }
 gfx_device_use gfx_device_used(const gfx_device *device) {
     return (gfx_device_use){.passes = device->passes,
                             .shader_variants = device->shaders.count,
-                            .target_bytes = gfx_targets_bytes(device, &device->targets)};
+                            .target_bytes = gfx_targets_bytes(device, &device->targets),
+                            .loading = gfx_textures_loading(&device->textures),
+                            .uploaded_bytes = device->textures.uploaded};
 }
 bool gfx_device_software(const gfx_device *device) { return device->software; }

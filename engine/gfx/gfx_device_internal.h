@@ -5,6 +5,7 @@
 #include "gfx/gfx_cluster.h"
 #include "gfx/gfx_context.h"
 #include "gfx/gfx_internal.h"
+#include "gfx/gfx_mips.h"
 #include "gfx/gfx_shader.h"
 
 enum { GFX_FRAMES = 3 }; // frames that the processor may be ahead of the GPU, and itself
@@ -46,21 +47,47 @@ typedef struct gfx_geometry { // all meshes of one world in common buffers
 bool gfx_geometry_update(gfx_geometry *g, const gfx_world *world);
 void gfx_geometry_release(gfx_geometry *g);
 
-// ---- textures and materials (gfx_textures.c) ----
+// ---- textures (gfx_textures.c) ----
 
+enum { GFX_TEXTURE_LOADING, GFX_TEXTURE_READY, GFX_TEXTURE_MISSING };
 typedef struct gfx_texture {
     char path[CORE_NAME_MAX];
     bool srgb;
-    GLuint name; // 0: it could not be read
+    int state;
+    GLuint name, own; // what is bound: its own, grey while it loads, a checker when it is missing
     uint32_t width, height;
+    uint64_t stamp; // of the file
 } gfx_texture;
+typedef struct gfx_upload { // an image on its way to the GPU
+    gfx_mips image;
+    GLuint name;
+    uint32_t level, row; // next
+} gfx_upload;
+typedef struct gfx_loader gfx_loader;
 typedef struct gfx_textures {
     gfx_growing all; // gfx_texture
+    gfx_loader *loader;
+    gfx_upload upload;
+    uint32_t uploading; // texture of the upload
+    size_t uploaded;    // bytes, last frame
+    uint64_t version;   // raised when a texture becomes another
 } gfx_textures;
-// The texture of an image file, read once. NULL when it cannot be read, logged at the first try.
-// Valid until the next call.
+// Textures that are always there.
+#define GFX_TEXTURE_WHITE   "//white"
+#define GFX_TEXTURE_FLAT    "//flat" // as a normal map
+#define GFX_TEXTURE_GREY    "//grey"
+#define GFX_TEXTURE_CHECKER "//checker"
+// The texture of an image file, read once; a checker when it cannot be read, logged at the first
+// try. Valid until the next call.
 const gfx_texture *gfx_texture_get(gfx_device *device, const char *path, bool srgb);
+// Uploads what the loader has read, as much as a frame may.
+void gfx_textures_update(gfx_device *device, const gfx_world *world);
+// Reads again what changed on disk; false when one is broken, whose last good picture stays.
+bool gfx_textures_reload(gfx_device *device);
+uint32_t gfx_textures_loading(const gfx_textures *textures);
 void gfx_textures_release(gfx_textures *textures);
+
+// ---- materials (gfx_materials.c) ----
 
 enum { GFX_MATERIAL_TEXTURES = 5 }; // units GFX_TEX_BASE_COLOR to GFX_TEX_EMISSIVE
 typedef struct gfx_material_state { // what drawing with a material needs
@@ -70,8 +97,8 @@ typedef struct gfx_material_state { // what drawing with a material needs
 } gfx_material_state;
 typedef struct gfx_material_cache {
     GLuint buffer;
-    gfx_growing state; // gfx_material_state: the default, then one a row
-    uint64_t world, version;
+    gfx_growing state;                 // gfx_material_state: the default, then one a row
+    uint64_t world, version, textures; // versions that it was made from
 } gfx_material_cache;
 void gfx_materials_update(gfx_device *device, const gfx_world *world);
 void gfx_materials_release(gfx_material_cache *cache);
@@ -305,7 +332,7 @@ struct gfx_device {
     core_vfs *vfs;
     core_metrics *metrics;
     gfx_shaders shaders;
-    bool float_target, software, draw_parameters;
+    bool float_target, software, draw_parameters, background;
     char name[128];
     uint32_t gl_errors;
     uint32_t passes;        // of the last frame

@@ -44,10 +44,13 @@ static bool read_panorama(gfx_device *d, const char *path) {
         return false;
     }
     int width, height, channels; // 8-bit pictures are linearised by stb_image
-    float *rgb = stbi_loadf_from_memory(file, (int)size, &width, &height, &channels, 3);
+    bool sane = gfx_mips_check(path, file, size);
+    float *rgb =
+        sane ? stbi_loadf_from_memory(file, (int)size, &width, &height, &channels, 3) : NULL;
     core_free(file);
     if (!rgb) {
-        return core_fail("%s: no picture that can be read (%s)", path, stbi_failure_reason());
+        return sane &&
+               core_fail("%s: no picture that can be read (%s)", path, stbi_failure_reason());
     }
     glCreateTextures(GL_TEXTURE_2D, 1, &d->environment.panorama);
     glTextureStorage2D(d->environment.panorama, 1, GL_RGB16F, width, height);

@@ -309,6 +309,7 @@ static bool draw_world(gfx_device *d, gfx_world *world, gfx_targets *targets) {
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CULL);
     bool ok = gfx_targets_fit(d, world, targets) && gfx_geometry_update(&d->geometry, world);
     if (ok) {
+        gfx_textures_update(d, world);
         gfx_materials_update(d, world);
         gfx_draws_begin(d, world, &f.view);
         gfx_terrains_begin(d, world, &f.view);

@@ -137,6 +137,7 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     int auto_exposure;
     float key, adapt;
     float contrast, saturation, lift[3], gain[3];
+    float upload_budget; // MiB
     float fog, fog_falloff, fog_base, fog_color[3];
 } gfx_settings;
 void gfx_settings_default(gfx_settings *settings);

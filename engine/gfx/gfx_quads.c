@@ -74,10 +74,8 @@ static void add_command(gfx_device *d, gfx_world *world, const gfx_command *c) {
         extend_run(q, q->font ? gfx_font_texture(q->font) : 0, GFX_FEATURE_TEXT, before);
     } else {
         const gfx_texture *t = gfx_texture_get(d, (const char *)world->text.data + c->text, false);
-        if (t) {
-            add_image(q, c, t);
-            extend_run(q, t->name, GFX_FEATURE_IMAGE, before);
-        }
+        add_image(q, c, t);
+        extend_run(q, t->name, GFX_FEATURE_IMAGE, before);
     }
 }
 

@@ -165,16 +165,20 @@ static void test_occlusion_dims_ambient_light_only(void) {
     TEST_ASSERT_FLOAT_WITHIN(2e-3f, 64.0f / 255.0f, closed[0] / open[0]);
 }
 
-static void test_missing_map_is_white(void) {
-    gfx_material_desc m = gfx_material_desc_default();
-    add_plane(&m, 0);
+// Whichever map is missing, the surface shows squares of magenta and near black.
+static void test_missing_map_is_a_checker(void) {
     gfx_world_set_ambient(f.world, 1, 1, 1);
-    float open[3], missing[3];
-    pixel(8, 8, open);
-    strcpy(m.data.base_color_image, "maps/absent.png");
-    add_plane(&m, 0.1f);
-    pixel(8, 8, missing);
-    TEST_ASSERT_EQUAL_FLOAT(open[0], missing[0]);
+    for (int i = 0; i < 2; ++i) {
+        gfx_material_desc m = gfx_material_desc_default();
+        strcpy(i ? m.data.normal_image : m.data.base_color_image, "maps/absent.png");
+        add_plane(&m, 0.1f * (float)(i + 1));
+        float a[3], b[3];
+        pixel(8, 8, a); // the plane has 16 pixels and 8 squares a side
+        pixel(10, 8, b);
+        float most = fmaxf(a[0], b[0]), least = fminf(a[0], b[0]);
+        TEST_ASSERT_TRUE(most > 0.8f && least < 0.1f);
+        TEST_ASSERT_TRUE(fmaxf(a[1], b[1]) < 0.1f);
+    }
 }
 
 static void test_double_sided(void) {
@@ -235,7 +239,7 @@ int main(void) {
     RUN_TEST(test_blend_order);
     RUN_TEST(test_normal_map);
     RUN_TEST(test_occlusion_dims_ambient_light_only);
-    RUN_TEST(test_missing_map_is_white);
+    RUN_TEST(test_missing_map_is_a_checker);
     RUN_TEST(test_double_sided);
     RUN_TEST(test_draws_are_merged);
     return UNITY_END();
