@@ -231,8 +231,11 @@ void gfx_textures_update(gfx_device *d, const gfx_world *world) {
     gfx_textures *all = &d->textures;
     size_t budget = (size_t)(world->settings.upload_budget * 1048576.0f);
     all->uploaded = 0;
-    while (all->loader && all->uploaded < budget && (all->upload.name || take_job(all))) {
-        if (all->upload.name && upload_rows(&all->upload, budget, &all->uploaded)) {
+    while (all->loader && (all->upload.name || take_job(all))) {
+        if (all->upload.name) {
+            if (!upload_rows(&all->upload, budget, &all->uploaded)) {
+                return;
+            }
             replace(all, (gfx_texture *)all->all.data + all->uploading, &all->upload);
             gfx_mips_release(&all->upload.image);
             all->upload = (gfx_upload){0};
