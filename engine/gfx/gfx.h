@@ -175,6 +175,25 @@ typedef struct gfx_camera {
 } gfx_camera;
 void gfx_world_set_camera(gfx_world *world, const gfx_camera *camera);
 gfx_camera gfx_world_camera(const gfx_world *world);
+
+// Views besides that of the world's camera. One with a target draws to a texture, before all others
+// of its frame: materials and images have it under the path "target:NAME". Others share the
+// picture, in order of creation; when there is one, the world's own camera draws nothing.
+typedef core_handle gfx_viewport;
+typedef struct gfx_viewport_desc {
+    gfx_camera camera;
+    float rect[4];          // x, y, width, height: shares of the picture, origin top left
+    const char *target;     // name of a texture, 1..63 bytes, copied; NULL: the picture
+    uint32_t width, height; // of the texture, pixels, 1..16384
+    uint32_t cookie;
+} gfx_viewport_desc;
+gfx_viewport_desc gfx_viewport_desc_default(void); // the whole picture
+// Null + core_fail: a bad rectangle, name or size, a target that another view has, or more than 64.
+gfx_viewport gfx_viewport_create(gfx_world *world, const gfx_viewport_desc *desc);
+bool gfx_viewport_destroy(gfx_world *world, gfx_viewport viewport);
+bool gfx_viewport_alive(const gfx_world *world, gfx_viewport viewport);
+bool gfx_viewport_set_camera(gfx_world *world, gfx_viewport viewport, const gfx_camera *camera);
+bool gfx_viewport_camera(const gfx_world *world, gfx_viewport viewport, gfx_camera *out);
 // The ray through a pixel of a picture (origin top left) of a camera: where it starts, unit
 // direction.
 void gfx_camera_ray(const gfx_camera *camera, float width, float height, float x, float y,

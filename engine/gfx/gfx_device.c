@@ -117,7 +117,7 @@ void gfx_device_destroy(gfx_device *device) {
     glDeleteTextures(1, &d->dfg_texture);
     glDeleteVertexArrays(1, &d->empty_vao);
     gfx_targets_release(&d->targets);
-    glDeleteBuffers(1, &d->exposure);
+    gfx_views_release(d);
     gfx_growing *const arrays[] = {&d->places, &d->visible,  &d->keys,   &d->scratch,
                                    &d->rows,   &d->commands, &d->batches};
     for (size_t i = 0; i < CORE_COUNT_OF(arrays); ++i) {
@@ -180,10 +180,19 @@ bool gfx_device_reload(gfx_device *device) {
 }
 
 const char *gfx_device_name(const gfx_device *device) { return device->name; }
+static size_t target_bytes(const gfx_device *d) {
+    const gfx_extra_view *extra = d->extra.data;
+    size_t bytes = gfx_targets_bytes(d, &d->targets);
+    for (size_t i = 0; i < d->extra.count; ++i) {
+        bytes += gfx_targets_bytes(d, &extra[i].targets);
+    }
+    return bytes;
+}
+
 gfx_device_use gfx_device_used(const gfx_device *device) {
     return (gfx_device_use){.passes = device->passes,
                             .shader_variants = device->shaders.count,
-                            .target_bytes = gfx_targets_bytes(device, &device->targets),
+                            .target_bytes = target_bytes(device),
                             .loading = gfx_textures_loading(&device->textures),
                             .uploaded_bytes = device->textures.uploaded};
 }

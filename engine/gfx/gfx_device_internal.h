@@ -80,6 +80,9 @@ typedef struct gfx_textures {
 // The texture of an image file, read once; a checker when it cannot be read, logged at the first
 // try. Valid until the next call.
 const gfx_texture *gfx_texture_get(gfx_device *device, const char *path, bool srgb);
+// Enters a texture that is drawn here; name 0 takes it away: a checker.
+void gfx_texture_enter(gfx_device *device, const char *path, bool srgb, GLuint name, uint32_t width,
+                       uint32_t height);
 // Uploads what the loader has read, as much as a frame may.
 void gfx_textures_update(gfx_device *device, const gfx_world *world);
 // Reads again what changed on disk; false when one is broken, whose last good picture stays.
@@ -287,13 +290,33 @@ typedef struct gfx_targets {
     gfx_target ao, ao_smooth;           // visibility of ambient light
     gfx_target bloom[GFX_BLOOM_LEVELS]; // halves of halves of the bright part
     gfx_target encoded;                 // what FXAA reads
+    GLuint exposure;                    // buffer of exposure.comp, 0: the exposure is fixed
+    gfx_target image; // of a view that is a texture: the picture, rows as in files
+    GLuint light;     // the same texels as sRGB
 } gfx_targets;
 // Makes the targets that the world's settings ask for and drops those that they do not.
 bool gfx_targets_fit(gfx_device *device, const gfx_world *world, gfx_targets *t);
 // Main targets of a size; all others are dropped.
 bool gfx_targets_resize(gfx_device *device, gfx_targets *t, uint32_t width, uint32_t height);
+void gfx_targets_add_image(gfx_targets *t);
 void gfx_targets_release(gfx_targets *t);
 size_t gfx_targets_bytes(const gfx_device *device, const gfx_targets *t);
+
+// ---- further views (gfx_views.c) ----
+
+typedef struct gfx_extra_view {
+    gfx_viewport viewport; // null: free
+    uint64_t world;
+    char path[CORE_NAME_MAX]; // of the texture, "": part of the picture
+    gfx_targets targets;
+} gfx_extra_view;
+// Makes targets for the world's viewports, drops those of viewports that are gone, and enters those
+// that are textures under their names.
+bool gfx_views_fit(gfx_device *device, const gfx_world *world);
+gfx_targets *gfx_views_targets(gfx_device *device, const gfx_world *world, uint32_t row);
+// Copies what was drawn to its rectangle of the picture, or to its texture.
+void gfx_views_place(gfx_device *device, const gfx_world *world, uint32_t row);
+void gfx_views_release(gfx_device *device);
 
 // ---- passes over the whole picture (gfx_post.c) ----
 
@@ -338,7 +361,7 @@ struct gfx_device {
     uint32_t passes;        // of the last frame
     uint32_t width, height; // of the view that is drawn
     gfx_targets targets;
-    GLuint exposure; // buffer of exposure.comp, 0: the exposure is fixed
+    gfx_growing extra; // gfx_extra_view, of the world's viewports
     GLint most_samples;
     bool samples_warned;
     GLuint empty_vao, dfg_texture;

@@ -302,10 +302,11 @@ static bool make_dfg(gfx_device *d) {
     return true;
 }
 
-static bool draw_world(gfx_device *d, gfx_world *world, gfx_targets *targets) {
+static bool draw_view(gfx_device *d, gfx_world *world, const gfx_camera *camera,
+                      gfx_targets *targets) {
     frame f = {.device = d, .world = world, .targets = targets};
-    gfx_camera camera = gfx_world_camera_or_default(world);
-    gfx_view_make(&camera, (float)targets->width / (float)targets->height, &f.view);
+    d->width = targets->width, d->height = targets->height;
+    gfx_view_make(camera, (float)targets->width / (float)targets->height, &f.view);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_CULL);
     bool ok = gfx_targets_fit(d, world, targets) && gfx_geometry_update(&d->geometry, world);
     if (ok) {
@@ -318,7 +319,7 @@ static bool draw_world(gfx_device *d, gfx_world *world, gfx_targets *targets) {
         gfx_shadows_plan(d, world, &f.view);
         gfx_draws_upload(d, world);
         gfx_terrains_upload(d, world);
-        world->stats.triangles = f.list.triangles + f.terrain.triangles;
+        world->stats.triangles += f.list.triangles + f.terrain.triangles;
     }
     core_stage_end(d->metrics, CORE_STAGE_GFX_CULL);
     if (!ok) {
@@ -332,8 +333,57 @@ static bool draw_world(gfx_device *d, gfx_world *world, gfx_targets *targets) {
     ok = ok && gfx_shadows_draw(d, world) && gfx_environment_update(d, world);
     upload_view(d, world, &f.view, &f.lights);
     f.features = scene_features(&f);
-    ok = ok && draw_passes(&f) && gfx_quads_draw(d, world);
+    ok = ok && draw_passes(&f);
     core_stage_end(d->metrics, CORE_STAGE_GFX_DRAW);
+    return ok;
+}
+
+// Each view has a turn of the streams of its own.
+static bool draw_in_turn(gfx_device *d, gfx_world *world, const gfx_camera *camera,
+                         gfx_targets *targets, bool last) {
+    begin_turn(d);
+    begin_timer(d);
+    bool ok = draw_view(d, world, camera, targets);
+    d->width = d->targets.width, d->height = d->targets.height;
+    if (last) {
+        gfx_post_begin(d, &d->targets.picture);
+        ok = ok && gfx_quads_draw(d, world);
+    }
+    end_turn(d);
+    return ok;
+}
+
+static bool draw_extra(gfx_device *d, gfx_world *world, uint32_t row) {
+    const gfx_viewport_store *s = &world->viewports.store[row];
+    bool ok = draw_in_turn(d, world, &s->camera, gfx_views_targets(d, world, row), false);
+    gfx_views_place(d, world, row);
+    return ok;
+}
+
+// Views that are textures, then those of the picture: further ones in place of the world's camera.
+static bool draw_views(gfx_device *d, gfx_world *world) {
+    uint32_t count = world->viewports_made ? core_columns_count(&world->viewports.set) : 0;
+    bool ok = gfx_views_fit(d, world), shared = false;
+    for (uint32_t i = 0; i < count && ok; ++i) {
+        bool texture = world->viewports.store[i].target[0] != 0;
+        shared |= !texture;
+        ok = !texture || draw_extra(d, world, i);
+    }
+    gfx_camera camera = gfx_world_camera_or_default(world);
+    if (!shared || !ok) {
+        return ok && draw_in_turn(d, world, &camera, &d->targets, true);
+    }
+    const float black[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+    glClearNamedFramebufferfv(d->targets.picture.name, GL_COLOR, 0, black);
+    for (uint32_t i = 0; i < count && ok; ++i) {
+        if (!world->viewports.store[i].target[0]) {
+            ok = draw_extra(d, world, i);
+        }
+    }
+    begin_turn(d); // for what is drawn over all of them
+    gfx_post_begin(d, &d->targets.picture);
+    ok = ok && gfx_quads_draw(d, world);
+    end_turn(d);
     return ok;
 }
 
@@ -348,9 +398,6 @@ bool gfx_device_render(gfx_device *device, gfx_world *world) {
     if (!d->context->table->make_current(d->context) || !gfx_device_follow_window(d)) {
         return false;
     }
-    begin_turn(d);
-    begin_timer(d);
-    bool ok = (d->dfg_texture || make_dfg(d)) && draw_world(d, world, &d->targets);
-    end_turn(d);
+    bool ok = (d->dfg_texture || make_dfg(d)) && draw_views(d, world);
     return ok && gfx_device_check(d, "gfx_device_render", errors);
 }

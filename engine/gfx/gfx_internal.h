@@ -82,6 +82,15 @@ CORE_COLUMNS_DECLARE(gfx_meshes, GFX_MESH_COLUMNS)
 #define GFX_MATERIAL_COLUMNS(X) X(core_material_data, data, 0)
 CORE_COLUMNS_DECLARE(gfx_materials, GFX_MATERIAL_COLUMNS)
 
+typedef struct gfx_viewport_store {
+    gfx_camera camera;
+    float rect[4];
+    char target[64]; // "": the picture
+    uint32_t width, height;
+} gfx_viewport_store;
+#define GFX_VIEWPORT_COLUMNS(X) X(gfx_viewport_store, store, 0)
+CORE_COLUMNS_DECLARE(gfx_viewports, GFX_VIEWPORT_COLUMNS)
+
 #define GFX_BUILTIN_MESHES 5
 
 typedef enum gfx_command_type { GFX_CMD_RECT, GFX_CMD_TEXT, GFX_CMD_IMAGE } gfx_command_type;
@@ -150,6 +159,8 @@ struct gfx_world {
     gfx_instances instances;
     gfx_meshes meshes;
     gfx_materials materials;
+    gfx_viewports viewports; // made by the first one
+    bool viewports_made;
     gfx_mesh builtin[GFX_BUILTIN_MESHES];
     uint64_t mesh_version, material_version, instance_version; // raised by every change
     uint64_t row_version;    // of instances: by every change of any column

@@ -11,12 +11,13 @@ static void write_block(const core_material_data *m, struct gfx_material_block *
     memcpy(out->base_color, m->base_color, sizeof out->base_color);
 }
 
-// A map that is not named does nothing; one that cannot be read makes the base colour a checker.
+// A map that is not named does nothing. A colour that cannot be read is a checker; where another
+// map cannot, the base colour is one.
 static GLuint map_of(gfx_device *d, const char *path, bool srgb, const char *fallback,
                      bool *missing) {
     if (path[0]) {
         const gfx_texture *t = gfx_texture_get(d, path, srgb);
-        if (t->state != GFX_TEXTURE_MISSING) {
+        if (srgb || t->state != GFX_TEXTURE_MISSING) {
             return t->name;
         }
         *missing = true;

@@ -62,20 +62,20 @@ static bool bloom(gfx_device *d, const gfx_world *world, gfx_targets *t) {
     return ok;
 }
 
-static bool expose(gfx_device *d, const gfx_targets *t) {
+static bool expose(gfx_device *d, gfx_targets *t) {
     enum { WORDS = 1 + 2 * GFX_EXPOSURE_BINS, TILE = 16 };
     GLuint count = gfx_shaders_compute(&d->shaders, "exposure.comp", GFX_FEATURE_COUNT_LISTS);
     GLuint sum = gfx_shaders_compute(&d->shaders, "exposure.comp", GFX_FEATURE_SUM_LISTS);
     if (!count || !sum) {
         return false;
     }
-    if (!d->exposure) {
-        glCreateBuffers(1, &d->exposure);
-        glNamedBufferStorage(d->exposure, WORDS * sizeof(uint32_t), NULL, 0);
-        glClearNamedBufferData(d->exposure, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+    if (!t->exposure) {
+        glCreateBuffers(1, &t->exposure);
+        glNamedBufferStorage(t->exposure, WORDS * sizeof(uint32_t), NULL, 0);
+        glClearNamedBufferData(t->exposure, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
     }
     d->passes++;
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_EXPOSURE, d->exposure);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_EXPOSURE, t->exposure);
     glBindTextureUnit(GFX_TEX_HDR, t->hdr.texture);
     glUseProgram(count);
     glDispatchCompute((t->width + TILE - 1) / TILE, (t->height + TILE - 1) / TILE, 1);
@@ -106,9 +106,9 @@ bool gfx_post_finish(gfx_device *d, const gfx_world *world, gfx_targets *t) {
         if (!expose(d, t)) {
             return false;
         }
-    } else if (d->exposure) {
-        glDeleteBuffers(1, &d->exposure);
-        d->exposure = 0;
+    } else if (t->exposure) {
+        glDeleteBuffers(1, &t->exposure);
+        t->exposure = 0;
     }
     if (features & GFX_FEATURE_BLOOM && !bloom(d, world, t)) {
         return false;

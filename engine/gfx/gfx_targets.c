@@ -115,6 +115,13 @@ bool gfx_targets_fit(gfx_device *d, const gfx_world *world, gfx_targets *t) {
            fit(&t->encoded, fxaa, GL_RGBA8, w, h, GL_LINEAR);
 }
 
+void gfx_targets_add_image(gfx_targets *t) {
+    make_target(&t->image, GL_RGBA8, t->width, t->height, GL_LINEAR);
+    glGenTextures(1, &t->light);
+    glTextureView(t->light, GL_TEXTURE_2D, t->image.texture, GL_SRGB8_ALPHA8, 0, 1, 0, 1);
+    glTextureParameteri(t->light, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+}
+
 bool gfx_targets_resize(gfx_device *d, gfx_targets *t, uint32_t width, uint32_t height) {
     gfx_targets_release(t);
     t->width = width, t->height = height;
@@ -126,15 +133,17 @@ bool gfx_targets_resize(gfx_device *d, gfx_targets *t, uint32_t width, uint32_t 
 }
 
 void gfx_targets_release(gfx_targets *t) {
-    gfx_target *const all[] = {&t->hdr, &t->picture, &t->ao, &t->ao_smooth, &t->encoded};
+    gfx_target *const all[] = {&t->hdr, &t->picture, &t->ao, &t->ao_smooth, &t->encoded, &t->image};
     for (size_t i = 0; i < CORE_COUNT_OF(all); ++i) {
         release_target(all[i]);
     }
     for (size_t i = 0; i < GFX_BLOOM_LEVELS; ++i) {
         release_target(&t->bloom[i]);
     }
-    glDeleteTextures(1, &t->depth);
-    t->depth = 0;
+    const GLuint textures[2] = {t->depth, t->light};
+    glDeleteTextures(2, textures);
+    glDeleteBuffers(1, &t->exposure);
+    t->depth = t->light = t->exposure = 0;
     release_samples(t);
 }
 
@@ -144,6 +153,7 @@ size_t gfx_targets_bytes(const gfx_device *d, const gfx_targets *t) {
     bytes += pixels * t->sample_count * (hdr + 4);
     bytes += t->ao.texture ? pixels * 4 : 0;
     bytes += t->encoded.texture ? pixels * 4 : 0;
+    bytes += t->image.texture ? pixels * 4 : 0;
     for (size_t i = 0; i < GFX_BLOOM_LEVELS; ++i) {
         bytes += (size_t)t->bloom[i].width * t->bloom[i].height * hdr;
     }

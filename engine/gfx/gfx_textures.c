@@ -202,6 +202,11 @@ static void load_now(gfx_device *d, gfx_texture *t) {
 }
 
 static void load(gfx_device *d, gfx_texture *t) {
+    if (strncmp(t->path, "target:", 7) == 0) {
+        core_log(CORE_LOG_WARN, "%s: no view draws to this target", t->path);
+        fail(&d->textures, t);
+        return;
+    }
     t->stamp = d->vfs ? core_vfs_stamp(d->vfs, t->path) : 0;
     t->state = GFX_TEXTURE_LOADING;
     if (!d->background || !ask(d, t)) {
@@ -292,11 +297,33 @@ const gfx_texture *gfx_texture_get(gfx_device *d, const char *path, bool srgb) {
     return t;
 }
 
+void gfx_texture_enter(gfx_device *d, const char *path, bool srgb, GLuint name, uint32_t width,
+                       uint32_t height) {
+    gfx_textures *all = &d->textures;
+    if (all->all.count == 0) {
+        add_all_plain(all);
+    }
+    gfx_texture *t = find(all, path, srgb);
+    if (!t) {
+        t = gfx_grow(&all->all, sizeof *t, 1);
+        *t = (gfx_texture){.srgb = srgb};
+        snprintf(t->path, sizeof t->path, "%s", path);
+    }
+    if (!name) {
+        fail(all, t);
+    } else if (t->name != name) {
+        t->name = name;
+        t->width = width, t->height = height;
+        t->state = GFX_TEXTURE_READY;
+        all->version++;
+    }
+}
+
 bool gfx_textures_reload(gfx_device *d) {
     gfx_texture *t = d->textures.all.data;
     bool ok = true;
     for (size_t i = 0; d->vfs && i < d->textures.all.count; ++i) {
-        bool plain = strncmp(t[i].path, "//", 2) == 0;
+        bool plain = strncmp(t[i].path, "//", 2) == 0 || strncmp(t[i].path, "target:", 7) == 0;
         uint64_t stamp = plain ? t[i].stamp : core_vfs_stamp(d->vfs, t[i].path);
         if (stamp != t[i].stamp && t[i].state != GFX_TEXTURE_LOADING) {
             bool had = t[i].own != 0;

@@ -66,6 +66,9 @@ void gfx_world_destroy(gfx_world *world) {
     core_columns_release(&world->instances.set);
     core_columns_release(&world->meshes.set);
     core_columns_release(&world->materials.set);
+    if (world->viewports_made) {
+        core_columns_release(&world->viewports.set);
+    }
     gfx_growing_release(&world->commands);
     gfx_growing_release(&world->lines);
     gfx_growing_release(&world->boards);
