@@ -2,6 +2,7 @@
 #include "script/bind_gfx.h"
 #include "script/internal.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static int done(lua_State *L, bool good) {
@@ -25,90 +26,6 @@ static int set_ambient(script *s, lua_State *L, void *args) {
     (void)L;
     gfx_world_set_ambient(scene_gfx(s->scene), (float)a->r, (float)a->g, (float)a->b);
     return 0;
-}
-
-// ---- camera ----
-
-typedef struct camera_options {
-    core_vec3 position, target;
-    core_quat rotation;
-    float fov, near_plane, far, height;
-    bool has_position, has_target, has_rotation;
-} camera_options;
-typedef struct camera_call {
-    camera_options options;
-} camera_call;
-
-// Rotation whose -Z looks from eye to target, +Y up (or +Z when looking straight up or down).
-static core_quat look_rotation(core_vec3 eye, core_vec3 target) {
-    core_vec3 back = core_v3_normalize(core_v3_sub(eye, target), core_v3(0, 0, 1));
-    core_vec3 up = back.y > 0.9999f || back.y < -0.9999f ? core_v3(0, 0, -1) : core_v3(0, 1, 0);
-    core_vec3 right = core_v3_normalize(core_v3_cross(up, back), core_v3(1, 0, 0));
-    up = core_v3_cross(back, right);
-    // Quaternion of the matrix (right, up, back): largest of the four squares first (Shepperd
-    // 1978).
-    float m00 = right.x, m11 = up.y, m22 = back.z, trace = m00 + m11 + m22;
-    core_quat q;
-    if (trace > 0) {
-        float s = 2 * core_sqrtf(trace + 1);
-        q = (core_quat){(up.z - back.y) / s, (back.x - right.z) / s, (right.y - up.x) / s, s / 4};
-    } else if (m00 > m11 && m00 > m22) {
-        float s = 2 * core_sqrtf(1 + m00 - m11 - m22);
-        q = (core_quat){s / 4, (up.x + right.y) / s, (back.x + right.z) / s, (up.z - back.y) / s};
-    } else if (m11 > m22) {
-        float s = 2 * core_sqrtf(1 + m11 - m00 - m22);
-        q = (core_quat){(up.x + right.y) / s, s / 4, (back.y + up.z) / s, (back.x - right.z) / s};
-    } else {
-        float s = 2 * core_sqrtf(1 + m22 - m00 - m11);
-        q = (core_quat){(back.x + right.z) / s, (back.y + up.z) / s, s / 4, (right.y - up.x) / s};
-    }
-    return core_quat_normalize(q);
-}
-
-static int set_camera(script *s, lua_State *L, void *args) {
-    const camera_options *o = &((camera_call *)args)->options;
-    gfx_world *world = scene_gfx(s->scene);
-    gfx_camera camera = gfx_world_camera(world);
-    if (o->has_target && o->has_rotation) {
-        bind_error(L, "corsac.gfx.setCamera: give either target or rotation");
-    }
-    if (o->has_position) {
-        camera.position = o->position;
-    }
-    if (o->has_target) {
-        camera.rotation = look_rotation(camera.position, o->target);
-    } else if (o->has_rotation) {
-        camera.rotation = o->rotation;
-    }
-    camera.fovy = o->fov;
-    camera.near_plane = o->near_plane;
-    camera.virtual_far = o->far;
-    camera.ortho_height = o->height;
-    gfx_world_set_camera(world, &camera);
-    return 0;
-}
-
-typedef struct look_args {
-    double x, y, z, tx, ty, tz;
-} look_args;
-static int look_at(script *s, lua_State *L, void *args) {
-    const look_args *a = args;
-    (void)L;
-    gfx_world *world = scene_gfx(s->scene);
-    gfx_camera camera = gfx_world_camera(world);
-    camera.position = core_v3((float)a->x, (float)a->y, (float)a->z);
-    camera.rotation =
-        look_rotation(camera.position, core_v3((float)a->tx, (float)a->ty, (float)a->tz));
-    gfx_world_set_camera(world, &camera);
-    return 0;
-}
-
-static int get_camera(script *s, lua_State *L, void *args) {
-    (void)args;
-    gfx_camera camera = gfx_world_camera(scene_gfx(s->scene));
-    bind_push_vec3(L, camera.position);
-    bind_push_quat(L, camera.rotation);
-    return 7;
 }
 
 // ---- lights ----
@@ -344,11 +261,40 @@ static const bind_arg environment_fields[] = {
     {0}};
 
 typedef struct setting_args {
-    const char *name, *value;
+    const char *name;
+    int value;
 } setting_args;
+
+// A setting's text of a Lua value: numbers and strings as they are, switches as on and off, a
+// colour as its three numbers.
+static void setting_text(lua_State *L, int value, char *out, size_t size) {
+    if (lua_isboolean(L, value)) {
+        snprintf(out, size, "%s", lua_toboolean(L, value) ? "on" : "off");
+    } else if (lua_type(L, value) == LUA_TNUMBER) {
+        snprintf(out, size, "%.9g", lua_tonumber(L, value));
+    } else if (lua_istable(L, value)) {
+        double c[3];
+        for (int i = 0; i < 3; ++i) {
+            lua_rawgeti(L, value, i + 1);
+            c[i] = lua_tonumber(L, -1);
+            lua_pop(L, 1);
+        }
+        snprintf(out, size, "%.9g,%.9g,%.9g", c[0], c[1], c[2]);
+    } else if (lua_type(L, value) == LUA_TSTRING) {
+        snprintf(out, size, "%s", lua_tostring(L, value));
+    } else {
+        bind_error(L,
+                   "corsac.gfx.set: value: expected a string, a number, true, false or "
+                   "{r, g, b}, got a %s",
+                   luaL_typename(L, value));
+    }
+}
+
 static int set_setting(script *s, lua_State *L, void *args) {
     const setting_args *a = args;
-    return done(L, gfx_world_set(scene_gfx(s->scene), a->name, a->value));
+    char text[128];
+    setting_text(L, a->value, text, sizeof text);
+    return done(L, gfx_world_set(scene_gfx(s->scene), a->name, text));
 }
 
 // ---- the screen ----
@@ -399,24 +345,6 @@ static int set_render(script *s, lua_State *L, void *args) {
 
 // ---- declarations ----
 
-static const bind_arg camera_fields[] = {
-    {"position", BIND_VEC3, BIND_AT(camera_options, position), "of the eye", "m", .optional = true,
-     .def_text = "as before", BIND_GIVEN(camera_options, has_position)},
-    {"target", BIND_VEC3, BIND_AT(camera_options, target), "point it looks at", "m",
-     .optional = true, .def_text = "as before", BIND_GIVEN(camera_options, has_target)},
-    {"rotation", BIND_QUAT, BIND_AT(camera_options, rotation), "in place of target; looks along -Z",
-     .optional = true, .def_text = "as before", BIND_GIVEN(camera_options, has_rotation)},
-    {"fov", BIND_FLOAT, BIND_AT(camera_options, fov), "vertical field of view", "rad", BIND_BETWEEN,
-     .min = 0.01, .max = 3, .optional = true, .def = 1.0471975511965976},
-    {"near", BIND_FLOAT, BIND_AT(camera_options, near_plane), "nearest visible distance", "m",
-     BIND_POSITIVE, .optional = true, .def = 0.1},
-    {"far", BIND_FLOAT, BIND_AT(camera_options, far), "no point or spot light is seen beyond", "m",
-     BIND_POSITIVE, .optional = true, .def = 100},
-    {"height", BIND_FLOAT, BIND_AT(camera_options, height),
-     "of what is seen without perspective; 0: with perspective", "m", BIND_NOT_NEGATIVE,
-     .optional = true},
-    {0}};
-
 static const bind_arg light_fields[] = {
     {"type", BIND_ENUM, BIND_AT(light_options, type), "kind of source", .optional = true,
      .values = LIGHT_TYPES},
@@ -451,23 +379,6 @@ static const bind_fn functions[] = {
      BIND_RUNNING, .mod = true, .cost = 8, .run = set_background},
     {"setAmbient", "Light that comes from everywhere.", RGB_ARGS, NULL, sizeof(rgb_args),
      BIND_RUNNING, .mod = true, .cost = 8, .run = set_ambient},
-    {"setCamera", "Places the camera.",
-     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(camera_call, options), "the camera",
-                .fields = camera_fields}),
-     NULL, sizeof(camera_call), BIND_RUNNING, .run = set_camera},
-    {"lookAt", "Puts the camera at x, y, z, looking at tx, ty, tz.",
-     BIND_ARGS({"x", BIND_NUMBER, BIND_AT(look_args, x), "", "m"},
-               {"y", BIND_NUMBER, BIND_AT(look_args, y), "", "m"},
-               {"z", BIND_NUMBER, BIND_AT(look_args, z), "", "m"},
-               {"tx", BIND_NUMBER, BIND_AT(look_args, tx), "", "m"},
-               {"ty", BIND_NUMBER, BIND_AT(look_args, ty), "", "m"},
-               {"tz", BIND_NUMBER, BIND_AT(look_args, tz), "", "m"}),
-     NULL, sizeof(look_args), BIND_RUNNING, .run = look_at},
-    {"getCamera", "Position and rotation of the camera.", NULL,
-     BIND_RETURNS({"x", "number", "m"}, {"y", "number", "m"}, {"z", "number", "m"},
-                  {"qx", "number", NULL}, {"qy", "number", NULL}, {"qz", "number", NULL},
-                  {"qw", "number", NULL}),
-     0, BIND_VIEW, .run = get_camera},
     {"newLight", "Makes a light.",
      BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(light_call, options), "the light",
                 .fields = light_fields}),
@@ -483,8 +394,9 @@ static const bind_fn functions[] = {
                 .fields = environment_fields}),
      NULL, sizeof(environment_call), BIND_RUNNING, .run = set_environment},
     {"set", "Changes a setting, as --set gfx.NAME=VALUE does.",
-     BIND_ARGS({"name", BIND_STRING, BIND_AT(setting_args, name), "such as shadows"},
-               {"value", BIND_STRING, BIND_AT(setting_args, value), "such as soft"}),
+     BIND_ARGS({"name", BIND_STRING, BIND_AT(setting_args, name), "such as shadows, bloom, lift"},
+               {"value", BIND_VALUE, BIND_AT(setting_args, value),
+                "such as \"soft\", 0.2, true, {0.1, 0, 0}"}),
      NULL, sizeof(setting_args), BIND_RUNNING, .run = set_setting},
     {"setRender", "How lights are assigned to what they light.",
      BIND_ARGS({"method", BIND_ENUM, BIND_AT(render_args, method), "", .values = RENDERS}), NULL,

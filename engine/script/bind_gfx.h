@@ -4,6 +4,7 @@
 
 #include "script/bind.h"
 
-extern const bind_type bind_light_type, bind_material_type, bind_emitter_type, bind_terrain_type;
+extern const bind_type bind_light_type, bind_material_type, bind_emitter_type, bind_terrain_type,
+    bind_view_type;
 
 #endif
