@@ -340,6 +340,26 @@ local Material = {}
 ---Removes the material: what has it is drawn in the plain one.
 function Material:destroy() end
 
+---A part of the picture, or a texture, with a camera.
+---@class corsac.View
+local View = {}
+
+---@class View.setCamera.options
+---@field position? number[] of the eye, m
+---@field target? number[] point it looks at, m
+---@field rotation? number[]|corsac.AxisAngle in place of target; looks along -Z
+---@field fov? number vertical field of view, rad
+---@field near? number nearest visible distance, m
+---@field far? number no point or spot light is seen beyond, m
+---@field height? number of what is seen without perspective; 0: with perspective, m
+
+---Moves the view's camera.
+---@param options View.setCamera.options the camera
+function View:setCamera(options) end
+
+---Removes the view; who shows its texture shows a checker then.
+function View:destroy() end
+
 ---A source of particles.
 ---@class corsac.Emitter
 local Emitter = {}
@@ -1699,38 +1719,6 @@ function corsac.gfx.setBackground(r, g, b) end
 ---@param b number linear
 function corsac.gfx.setAmbient(r, g, b) end
 
----@class corsac.gfx.setCamera.options
----@field position? number[] of the eye, m
----@field target? number[] point it looks at, m
----@field rotation? number[]|corsac.AxisAngle in place of target; looks along -Z
----@field fov? number vertical field of view, rad
----@field near? number nearest visible distance, m
----@field far? number no point or spot light is seen beyond, m
----@field height? number of what is seen without perspective; 0: with perspective, m
-
----Places the camera.
----@param options corsac.gfx.setCamera.options the camera
-function corsac.gfx.setCamera(options) end
-
----Puts the camera at x, y, z, looking at tx, ty, tz.
----@param x number
----@param y number
----@param z number
----@param tx number
----@param ty number
----@param tz number
-function corsac.gfx.lookAt(x, y, z, tx, ty, tz) end
-
----Position and rotation of the camera.
----@return number x
----@return number y
----@return number z
----@return number qx
----@return number qy
----@return number qz
----@return number qw
-function corsac.gfx.getCamera() end
-
 ---@class corsac.gfx.newLight.options
 ---@field type? "point"|"spot"|"directional" kind of source
 ---@field position? number[] point, spot, m
@@ -1784,8 +1772,8 @@ function corsac.gfx.newMaterial(options) end
 function corsac.gfx.setEnvironment(options) end
 
 ---Changes a setting, as --set gfx.NAME=VALUE does.
----@param name string such as shadows
----@param value string such as soft
+---@param name string such as shadows, bloom, lift
+---@param value any such as "soft", 0.2, true, {0.1, 0, 0}
 function corsac.gfx.set(name, value) end
 
 ---How lights are assigned to what they light.
@@ -1815,6 +1803,59 @@ function corsac.gfx.rect(x, y, w, h, color) end
 ---@param w number width
 ---@param h number height
 function corsac.gfx.image(path, x, y, w, h) end
+
+---Cameras and views.
+corsac.gfx = {}
+
+---@class corsac.gfx.setCamera.options
+---@field position? number[] of the eye, m
+---@field target? number[] point it looks at, m
+---@field rotation? number[]|corsac.AxisAngle in place of target; looks along -Z
+---@field fov? number vertical field of view, rad
+---@field near? number nearest visible distance, m
+---@field far? number no point or spot light is seen beyond, m
+---@field height? number of what is seen without perspective; 0: with perspective, m
+
+---Places the camera.
+---@param options corsac.gfx.setCamera.options the camera
+function corsac.gfx.setCamera(options) end
+
+---Puts the camera at x, y, z, looking at tx, ty, tz.
+---@param x number
+---@param y number
+---@param z number
+---@param tx number
+---@param ty number
+---@param tz number
+function corsac.gfx.lookAt(x, y, z, tx, ty, tz) end
+
+---Position and rotation of the camera.
+---@return number x
+---@return number y
+---@return number z
+---@return number qx
+---@return number qy
+---@return number qz
+---@return number qw
+function corsac.gfx.getCamera() end
+
+---@class corsac.gfx.newView.options
+---@field position? number[] of the eye, m
+---@field target? number[] point it looks at, m
+---@field rotation? number[]|corsac.AxisAngle in place of target; looks along -Z
+---@field fov? number vertical field of view, rad
+---@field near? number nearest visible distance, m
+---@field far? number no point or spot light is seen beyond, m
+---@field height? number of what is seen without perspective; 0: with perspective, m
+---@field rect? number[] x, y, width, height: shares of the picture, origin top left
+---@field texture? string name of a texture in place of the picture: maps and images have it as "target:NAME"
+---@field width? number of the texture, pixels
+---@field height? number of the texture, pixels
+
+---Makes a view: a part of the picture, in place of what the camera sees, or a texture.
+---@param options corsac.gfx.newView.options the view
+---@return corsac.View view
+function corsac.gfx.newView(options) end
 
 ---Shapes, sprites and text over the frame; places on the screen.
 corsac.gfx = {}
