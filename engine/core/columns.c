@@ -65,7 +65,8 @@ static bool commit_rows(core_columns *set, uint32_t rows) {
         return true;
     }
     size_t limit = round_up(set->pool.capacity, CORE_LANES);
-    size_t wanted = CORE_MAX((size_t)set->committed * 2, FIRST_ROWS);
+    // By an eighth: the range never moves, so that growing copies nothing.
+    size_t wanted = CORE_MAX(round_up((size_t)set->committed / 8 * 9, CORE_LANES), FIRST_ROWS);
     wanted = CORE_MIN(CORE_MAX(wanted, round_up(rows, CORE_LANES)), limit);
     for (uint32_t c = 0; c < set->column_count; ++c) {
         if (!core_commit(set->data[c], wanted * set->column[c].size)) {

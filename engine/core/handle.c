@@ -42,8 +42,8 @@ static bool commit_slots(core_pool *pool, uint32_t slots) {
     if (slots <= pool->committed) {
         return true;
     }
-    uint64_t doubled = CORE_MAX((uint64_t)pool->committed * 2, POOL_FIRST);
-    uint32_t wanted = (uint32_t)CORE_MIN(CORE_MAX(doubled, slots), pool->capacity);
+    uint64_t grown = CORE_MAX((uint64_t)pool->committed / 8 * 9, POOL_FIRST);
+    uint32_t wanted = (uint32_t)CORE_MIN(CORE_MAX(grown, slots), pool->capacity);
     size_t bytes = (size_t)wanted * sizeof(uint32_t);
     if (!core_commit(pool->generation, bytes) || !core_commit(pool->row, bytes) ||
         !core_commit(pool->slot_of_row, bytes)) {

@@ -8,12 +8,35 @@ CORE_COLUMNS_DEFINE(phys_contacts, PHYS_CONTACT_COLUMNS)
 
 void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b) {
     if (list->count == list->capacity) {
-        uint32_t grown = list->capacity ? list->capacity * 2 : 256;
+        uint32_t grown = CORE_MAX(list->capacity / 4 * 5, 256u);
         list->pair =
             core_realloc(list->pair, list->capacity * sizeof(phys_pair), grown * sizeof(phys_pair));
         list->capacity = grown;
     }
     list->pair[list->count++] = (phys_pair){a, b};
+}
+
+static bool boxes_meet(const phys_shapes *s, uint32_t i, uint32_t j) {
+    return s->x0[i] <= s->x1[j] && s->x0[j] <= s->x1[i] && s->y0[i] <= s->y1[j] &&
+           s->y0[j] <= s->y1[i] && s->z0[i] <= s->z1[j] && s->z0[j] <= s->z1[i];
+}
+
+// Whether two balls can meet inside of their bounds. Their centres keep within bounds less the
+// radius: a third of the boxes that meet, at an edge or a corner, hold balls that cannot. r: sum
+// of the radii.
+static bool balls_meet(const phys_shapes *s, uint32_t i, uint32_t j, float r) {
+    float x = CORE_MAX(s->x0[i] - s->x1[j], s->x0[j] - s->x1[i]) + r;
+    float y = CORE_MAX(s->y0[i] - s->y1[j], s->y0[j] - s->y1[i]) + r;
+    float z = CORE_MAX(s->z0[i] - s->z1[j], s->z0[j] - s->z1[i]) + r;
+    x = CORE_MAX(x, 0.0f);
+    y = CORE_MAX(y, 0.0f);
+    z = CORE_MAX(z, 0.0f);
+    return x * x + y * y + z * z <= r * r;
+}
+
+static bool in_reach(const phys_shapes *s, uint32_t i, uint32_t j) {
+    bool balls = s->type[i] == PHYS_SPHERE && s->type[j] == PHYS_SPHERE;
+    return balls ? balls_meet(s, i, j, s->radius[i] + s->radius[j]) : boxes_meet(s, i, j);
 }
 
 bool phys_pair_wanted(const phys_world *w, uint32_t a, uint32_t b) {
@@ -58,7 +81,7 @@ static void map_grow(phys_pair_map *m) {
 }
 
 static void map_add(phys_pair_map *m, uint64_t key, uint32_t value) {
-    if ((m->count + 1) * 2 > m->capacity) {
+    if (m->count + 1 > m->capacity / 4 * 3) {
         map_grow(m);
     }
     uint32_t i = map_find(m, key);
@@ -198,34 +221,37 @@ static void sort_keys(uint64_t *key, uint64_t *tmp, uint32_t n) {
     }
 }
 
-// Whether a pair lives on: named by a full broad phase, or, for a partial one, not parted.
-static bool pair_lives(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t stamp) {
-    if (!w->broad->partial) {
-        return stamp == w->stamp;
-    }
+// reach: of balls, PHYS_APART: neither. Whether a pair lives on: named by a full broad phase, or,
+// for a partial one, not parted.
+static bool pair_lives(const phys_world *w, uint32_t sa, uint32_t sb, uint32_t stamp, float reach) {
     const phys_shapes *s = &w->shapes;
+    if (!w->broad->partial) {
+        return stamp == w->stamp &&
+               in_reach(s, phys_slot_row(&s->set, sa), phys_slot_row(&s->set, sb));
+    }
     uint32_t i = phys_slot_row(&s->set, sa), j = phys_slot_row(&s->set, sb);
     if (w->pairs_stale && !phys_pair_wanted(w, i, j)) {
         return false;
     }
-    return s->x0[i] <= s->x1[j] && s->x0[j] <= s->x1[i] && s->y0[i] <= s->y1[j] &&
-           s->y0[j] <= s->y1[i] && s->z0[i] <= s->z1[j] && s->z0[j] <= s->z1[i];
+    return reach < PHYS_APART ? balls_meet(s, i, j, reach) : boxes_meet(s, i, j);
 }
 
 static void remove_parted(phys_world *w) {
     for (uint32_t i = core_columns_count(&w->mesh_pairs.set); i-- > 0;) {
-        if (!pair_lives(w, w->mesh_pairs.sa[i], w->mesh_pairs.sb[i], w->mesh_pairs.stamp[i])) {
+        if (!pair_lives(w, w->mesh_pairs.sa[i], w->mesh_pairs.sb[i], w->mesh_pairs.stamp[i],
+                        PHYS_APART)) {
             mesh_pair_remove(w, i, &w->events);
         }
     }
     for (uint32_t i = core_columns_count(&w->balls.set); i-- > 0;) {
-        if (!pair_lives(w, w->balls.sa[i], w->balls.sb[i], w->balls.stamp[i]) &&
+        if (!pair_lives(w, w->balls.sa[i], w->balls.sb[i], w->balls.stamp[i], w->balls.reach[i]) &&
             !on_mesh(w, w->balls.sb[i])) {
             ball_remove(w, i, &w->events);
         }
     }
     for (uint32_t i = core_columns_count(&w->contacts.set); i-- > 0;) {
-        if (!pair_lives(w, w->contacts.sa[i], w->contacts.sb[i], w->contacts.stamp[i]) &&
+        if (!pair_lives(w, w->contacts.sa[i], w->contacts.sb[i], w->contacts.stamp[i],
+                        PHYS_APART) &&
             !on_mesh(w, w->contacts.sb[i])) {
             manifold_remove(w, i, &w->events);
         }
@@ -247,7 +273,8 @@ void phys_pairs_update(phys_world *w) {
                                 phys_row_slot(&w->shapes.set, w->pairs.pair[i].b));
         uint32_t at = map_find(&w->map, key);
         if (w->map.key[at] == 0) {
-            fresh[fresh_count++] = key;
+            fresh[fresh_count] = key;
+            fresh_count += in_reach(&w->shapes, w->pairs.pair[i].a, w->pairs.pair[i].b);
             continue;
         }
         uint32_t value = w->map.value[at];
