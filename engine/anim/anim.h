@@ -43,7 +43,8 @@ void anim_world_destroy(anim_world *world);
 bool anim_world_update(anim_world *world, float dt);
 // Computes the palettes of visible instances from their present state. No state changes.
 void anim_world_pose(anim_world *world);
-// Settings by name: "pack" = metres (0: keep clips as keys), "batch" = on|off (off: one instance at
+// Settings by name: "pack" = metres (0: keep clips as keys), "lod" = pixels of a picture 1,080 high
+// that palettes may be behind (0: none), "batch" = on|off (off: one instance at
 // a time by plain C, the baseline).
 bool anim_world_set(anim_world *world, const char *name, const char *value);
 int anim_world_state(const anim_world *world, const core_columns **out, int capacity);
@@ -324,6 +325,18 @@ bool anim_instance_set_visible(anim_world *world, anim_instance instance, bool v
 // Level of detail: the pose is computed at every n-th anim_world_pose only, 1..64; between them the
 // palette stays. Instances take turns. anim_world_error_max then shows what it costs in metres.
 bool anim_instance_set_rate(anim_world *world, anim_instance instance, uint32_t every);
+// Level of detail by what can be seen: the palette may be so many metres (of the model's own)
+// behind the pose; 0: never; INFINITY: it is not seen and not posed. How fast it moves is measured
+// at the joints farthest from the root, so that a calm crowd is posed seldom and a runner in front
+// always. Fades are never behind, nor is an instance whose bones were asked for: the simulation
+// sees no difference.
+bool anim_instance_set_tolerance(anim_world *world, anim_instance instance, float tolerance);
+// How far the palette is behind by that measure, m; 0 when it was posed last.
+float anim_instance_behind(const anim_world *world, anim_instance instance);
+uint32_t anim_world_posed(const anim_world *world); // instances posed by the last anim_world_pose
+// Of a sphere about the model's origin that holds the bind pose, m, roughly.
+float anim_instance_radius(const anim_world *world, anim_instance instance);
+float anim_world_lod(const anim_world *world); // setting "lod": pixels, which scene turns to metres
 // Displacement of the root in the last update, in the instance's own frame.
 bool anim_instance_root_motion(const anim_world *world, anim_instance instance, core_vec3 *out);
 

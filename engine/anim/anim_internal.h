@@ -13,6 +13,8 @@
 enum { ANIM_TX, ANIM_TY, ANIM_TZ, ANIM_RX, ANIM_RY, ANIM_RZ, ANIM_RW, ANIM_SX, ANIM_SY, ANIM_SZ };
 #define ANIM_COMPONENTS 10u
 
+enum { ANIM_PROBES = 8 };
+
 typedef struct anim_skeleton_res {
     uint32_t bones, stride;
     char (*name)[CORE_NAME_MAX];
@@ -20,6 +22,9 @@ typedef struct anim_skeleton_res {
     float *bind;         // [ANIM_COMPONENTS * stride]
     float *inverse_bind; // [bones * 12] rows of 3x4
     uint32_t users;      // clips and instances
+    // Points that tell how fast the skin moves (detail.c): the joints farthest from the root.
+    uint32_t probe[ANIM_PROBES], probe_count;
+    core_vec3 probe_place[ANIM_PROBES]; // in the bind pose
     // Palette places given back by destroyed instances, last in first out.
     uint32_t *free_place;
     uint32_t free_count, free_capacity;
@@ -152,6 +157,11 @@ typedef struct anim_goals {
     anim_goal goal[ANIM_MAX_GOALS];
 } anim_goals;
 
+typedef struct anim_probe { // where the probes were when the instance was posed last
+    core_vec3 at[ANIM_PROBES];
+    uint32_t measured; // pose_count then, 0: never
+} anim_probe;
+
 enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
 #define ANIM_INSTANCE_COLUMNS(X)                                                                   \
     X(core_handle, skeleton, CORE_COLUMN_STATE)                                                    \
@@ -168,8 +178,13 @@ enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
     X(float, root_z, CORE_COLUMN_STATE)                                                            \
     X(uint32_t, flags, CORE_COLUMN_STATE)                                                          \
     X(uint64_t, user, 0)                                                                           \
-    X(uint32_t, place, 0) /* first bone in the palette range */                                    \
-    X(uint32_t, posed, 0) /* palette holds a pose */
+    X(uint32_t, place, 0)    /* first bone in the palette range */                                 \
+    X(uint32_t, posed, 0)    /* palette holds a pose */                                            \
+    X(uint32_t, posed_at, 0) /* pose_count then */                                                 \
+    X(uint32_t, read, 0)     /* somebody asks for its bones: never behind */                       \
+    X(float, tolerance, 0)   /* m the palette may be behind */                                     \
+    X(float, motion, 0)      /* m that its fastest probe moves in a step */                        \
+    X(anim_probe, probe, 0)
 CORE_COLUMNS_DECLARE(anim_instances, ANIM_INSTANCE_COLUMNS)
 
 // Frozen poses, 16 bones a row, linked: pose columns of record for interrupted fades.
@@ -192,9 +207,11 @@ struct anim_world {
     anim_instances instances;
     anim_players players;
     anim_chunks chunks;
-    bool unbatched;   // pose one instance at a time
-    float pack_bound; // m: clips made from keys are compressed; 0: kept raw
-    float *palette;   // [max_bones * 12] reserved
+    bool unbatched;      // pose one instance at a time
+    float lod;           // pixels that palettes may be behind; 0: none
+    uint32_t pose_count; // calls of anim_world_pose
+    float pack_bound;    // m: clips made from keys are compressed; 0: kept raw
+    float *palette;      // [max_bones * 12] reserved
     uint32_t max_bones, bones_placed, bones_committed, bones_live;
     core_arena scratch[CORE_JOBS_MAX_THREADS]; // one a worker, made when first used
     uint32_t scratch_count;
@@ -233,8 +250,13 @@ void anim_clip_sample_columns(const anim_skeleton_res *s, const anim_clip_res *c
 void anim_batch_pose(anim_world *w);
 // Whether the row is to be posed now; counts the asking.
 bool anim_pose_due(anim_world *w, uint32_t row);
+// detail.c
+bool anim_detail_skips(const anim_world *w, uint32_t row); // the palette is near enough
+void anim_detail_measure(anim_world *w);                   // after a pose pass
+void anim_detail_choose_probes(anim_skeleton_res *s);
 // One instance by itself: the scalar reference.
 void anim_pose_plain(anim_world *w, uint32_t row, core_arena *arena);
+bool anim_palette_bone(const anim_world *w, uint32_t row, uint32_t bone, core_mat4 *out);
 float *anim_palette_of(const anim_world *w, uint32_t row);
 // The pose of an instance's present state.
 void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out);

@@ -307,7 +307,7 @@ static double instance_error(anim_world *w, uint32_t row, core_arena *arena) {
         }
         core_mat4 shown;
         double rows[12];
-        if (!anim_instance_bone(w, core_columns_handle(&w->instances.set, row), b, &shown)) {
+        if (!anim_palette_bone(w, row, b, &shown)) {
             continue; // a singular inverse bind cannot be undone
         }
         for (int i = 0; i < 12; i++) {

@@ -147,7 +147,10 @@ bool anim_pose_due(anim_world *w, uint32_t row) {
         return false;
     }
     uint32_t age = w->instances.age[row]++, rate = w->instances.rate[row];
-    return rate < 2 || age % rate == 0 || !w->instances.posed[row];
+    bool due = rate < 2 || age % rate == 0 || !w->instances.posed[row];
+    due = due && !anim_detail_skips(w, row);
+    w->instances.posed_at[row] = due ? w->pose_count : w->instances.posed_at[row];
+    return due;
 }
 
 static void pose_rows(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
@@ -164,6 +167,7 @@ static void pose_rows(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, u
 
 void anim_world_pose(anim_world *w) {
     core_stage_begin(w->metrics, CORE_STAGE_ANIM);
+    w->pose_count++;
     if (!anim_scratch(w, (uint32_t)core_jobs_threads(w->jobs) - 1)) {
         core_stage_end(w->metrics, CORE_STAGE_ANIM);
         return;
@@ -173,6 +177,7 @@ void anim_world_pose(anim_world *w) {
     } else {
         core_jobs_for(w->jobs, core_columns_count(&w->instances.set), POSE_GRAIN, pose_rows, w);
     }
+    anim_detail_measure(w);
     core_stage_end(w->metrics, CORE_STAGE_ANIM);
 }
 
@@ -203,19 +208,12 @@ const float *anim_instance_palette(const anim_world *w, anim_instance h, uint32_
 
 // The palette holds model * inverse bind; undoing the latter costs one product and saves a second
 // array for every bone of every instance.
-bool anim_instance_bone(anim_world *w, anim_instance h, uint32_t bone, core_mat4 *out) {
-    uint32_t row = anim_get_instance(w, h), bones;
-    if (row == CORE_NO_ROW) {
-        return false;
+bool anim_palette_bone(const anim_world *w, uint32_t row, uint32_t bone, core_mat4 *out) {
+    const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
+    const float *palette = anim_palette_of(w, row);
+    if (bone >= s->bones) {
+        return core_fail("anim_instance_bone: bone %u of %u", bone, s->bones);
     }
-    if (!w->instances.posed[row]) {
-        anim_pose_plain(w, row, anim_scratch(w, 0));
-    }
-    const float *palette = anim_instance_palette(w, h, &bones);
-    if (bone >= bones) {
-        return core_fail("anim_instance_bone: bone %u of %u", bone, bones);
-    }
-    const anim_skeleton_res *s = anim_get_skeleton(w, anim_instance_skeleton(w, h));
     core_mat4 skin = core_mat4_identity(), inverse = core_mat4_identity(), bind;
     for (uint32_t i = 0; i < 12; i++) {
         skin.m[i % 4 * 4 + i / 4] = palette[12 * bone + i];
@@ -226,4 +224,19 @@ bool anim_instance_bone(anim_world *w, anim_instance h, uint32_t bone, core_mat4
     }
     *out = core_mat4_mul(&skin, &bind);
     return true;
+}
+
+// What the simulation reads is never behind.
+bool anim_instance_bone(anim_world *w, anim_instance h, uint32_t bone, core_mat4 *out) {
+    uint32_t row = anim_get_instance(w, h);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    bool behind = w->instances.tolerance[row] > 0 && w->instances.posed_at[row] != w->pose_count;
+    if (!w->instances.posed[row] || behind) {
+        anim_pose_plain(w, row, anim_scratch(w, 0));
+        w->instances.posed_at[row] = w->pose_count;
+    }
+    w->instances.read[row] = 1;
+    return anim_palette_bone(w, row, bone, out);
 }

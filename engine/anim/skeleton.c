@@ -92,6 +92,7 @@ anim_skeleton anim_skeleton_create(anim_world *w, const core_skeleton_data *data
     }
     anim_skeleton_res *s = allocate(data->bone_count);
     copy_bones(s, data);
+    anim_detail_choose_probes(s);
     core_handle h = anim_resource_add(&w->skeletons, s);
     if (core_handle_is_null(h)) {
         core_free(s);

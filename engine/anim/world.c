@@ -86,7 +86,7 @@ void anim_world_destroy(anim_world *w) {
 
 // w NULL: only whether the setting is good (the room is made later).
 bool anim_world_set(anim_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"pack", "batch"};
+    static const char *const names[] = {"pack", "batch", "lod"};
     anim_world unused, *to = w ? w : &unused;
     char *end = NULL;
     if (strcmp(name, "pack") == 0) {
@@ -95,6 +95,15 @@ bool anim_world_set(anim_world *w, const char *name, const char *value) {
             return core_fail("anim.pack=%s: expected metres from 0 (keep keys) to 1", value);
         }
         to->pack_bound = bound;
+        return true;
+    }
+    if (strcmp(name, "lod") == 0) {
+        float pixels = strtof(value, &end);
+        if (end == value || *end || !(pixels >= 0 && pixels <= 100)) {
+            return core_fail("anim.lod=%s: expected pixels from 0 (every palette is new) to 100",
+                             value);
+        }
+        to->lod = pixels;
         return true;
     }
     if (strcmp(name, "batch") == 0) {
@@ -109,6 +118,8 @@ bool anim_world_set(anim_world *w, const char *name, const char *value) {
     return core_fail("anim.%s: no such setting%s%s%s", name, near ? "; did you mean anim." : "",
                      near ? near : "", near ? "?" : "");
 }
+
+float anim_world_lod(const anim_world *w) { return w->lod; }
 
 int anim_world_state(const anim_world *w, const core_columns **out, int capacity) {
     const core_columns *sets[] = {&w->instances.set, &w->players.set, &w->chunks.set};

@@ -1,4 +1,5 @@
 // The animation room in a scene: instances on entities, root motion, palettes to drawn meshes.
+#include <math.h>
 #include <string.h>
 
 #include "scene/scene_internal.h"
@@ -162,8 +163,48 @@ void scene_anim_pose(scene *s) {
     }
 }
 
+// Pixels of a picture 1,080 high that a metre at a place takes; 0: it is not in the picture, nor
+// within a margin of it that may throw a shadow in. Wide pictures are reckoned with.
+static float pixels_of(const gfx_camera *c, core_vec3 place, float radius) {
+    enum { HEIGHT = 1080 };
+    const float widest = 2.4f, margin = 2;
+    float reach = core_tanf((c->fovy > 0 ? c->fovy : 1.0472f) * 0.5f);
+    core_vec3 to = core_v3_sub(place, c->position);
+    core_vec3 local = core_quat_rotate(core_quat_conjugate(c->rotation), to);
+    float ahead = -local.z + radius + margin;
+    if (c->ortho_height > 0) {
+        return HEIGHT / c->ortho_height;
+    }
+    if (ahead <= 0 || fabsf(local.y) > reach * ahead + radius + margin ||
+        fabsf(local.x) > widest * reach * ahead + radius + margin) {
+        return 0;
+    }
+    return HEIGHT / (2 * reach * CORE_MAX(-local.z - radius, 0.1f));
+}
+
+// How far behind the palette of each drawn skeleton may be: so many pixels of the picture.
+static void set_tolerances(scene *s, float pixels) {
+    const scene_entities *e = &s->entity;
+    gfx_camera camera = gfx_world_camera(s->gfx);
+    for (uint32_t i = 0; i < anim_instance_count(s->anim); i++) {
+        anim_instance instance = anim_instance_at(s->anim, i);
+        uint32_t row = core_columns_row(&e->set, scene_entity_of_anim(s, instance));
+        if (row == CORE_NO_ROW) {
+            continue;
+        }
+        float scale = CORE_MAX(e->wsx[row], CORE_MAX(e->wsy[row], e->wsz[row]));
+        core_vec3 place = {e->wpx[row], e->wpy[row], e->wpz[row]};
+        float seen = pixels_of(&camera, place, scale * anim_instance_radius(s->anim, instance));
+        anim_instance_set_tolerance(s->anim, instance,
+                                    seen > 0 && scale > 0 ? pixels / (seen * scale) : INFINITY);
+    }
+}
+
 void scene_anim_sync(scene *s) {
     const scene_entities *e = &s->entity;
+    if (s->anim && anim_world_lod(s->anim) > 0) {
+        set_tolerances(s, anim_world_lod(s->anim));
+    }
     for (uint32_t row = 0; s->anim && row < core_columns_count(&e->set); row++) {
         if (core_handle_is_null(e->skin[row]) || core_handle_is_null(e->instance[row])) {
             continue;
