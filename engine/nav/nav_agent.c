@@ -412,11 +412,26 @@ static bool keep_path(nav_world *w, uint32_t row, uint32_t path) {
     return p->count > 0;
 }
 
+// Others may have pushed it off its goal, which it had reached: back, slowly, when it is clearly
+// off.
+static void come_back(nav_agents *a, uint32_t row, float dt) {
+    flat to = {a->gx[row] - a->px[row], a->gz[row] - a->pz[row]};
+    float distance = flat_length(to);
+    if (distance > 2.0f * a->arrive[row]) {
+        float speed = CORE_MIN(0.5f * a->max_speed[row], distance / dt);
+        a->wx[row] = to.x / distance * speed, a->wz[row] = to.z / distance * speed;
+    }
+}
+
 // Velocity wanted: along the way as fast as limits, turns and the goal allow.
 static void steer(nav_world *w, uint32_t row, float dt) {
     nav_agents *a = &w->agent;
     stop(a, row);
     uint32_t path = core_columns_row(&w->path.set, a->path[row]);
+    if (a->state[row] == NAV_AGENT_ARRIVED) {
+        come_back(a, row, dt);
+        return;
+    }
     bool walks = a->state[row] == NAV_AGENT_WALKING || a->state[row] == NAV_AGENT_STUCK;
     if (!walks || path == CORE_NO_ROW) {
         return;
@@ -514,7 +529,7 @@ uint32_t nav_agent_link(const nav_world *w, nav_agent agent) {
 
 // Who crosses a surface stays on it, whatever others push: at its border it slides along, and its
 // height is the ground's. Links lead off it.
-static void keep_on_surface(nav_world *w, uint32_t row) {
+void nav_agent_keep_on_surface(nav_world *w, uint32_t row) {
     nav_agents *a = &w->agent;
     if (nav_agent_row_link(w, row) != NAV_NO_LINK) {
         return;
@@ -536,11 +551,19 @@ void nav_agents_step(nav_world *w, float dt) {
     for (uint32_t row = 0; w->no_avoidance && row < count; row++) {
         a->nx[row] = a->wx[row], a->nz[row] = a->wz[row];
     }
-    if (!w->no_avoidance) {
+    if (!w->no_avoidance && count) {
+        float radius = 0.0f;
+        for (uint32_t row = 0; row < count; row++) {
+            radius = CORE_MAX(radius, a->radius[row]);
+        }
+        nav_gates_step(w, radius, dt);
         nav_crowd_avoid(w, dt);
     }
     for (uint32_t row = 0; row < count; row++) {
         move(a, row, dt);
-        keep_on_surface(w, row);
+        nav_agent_keep_on_surface(w, row);
+    }
+    if (!w->no_avoidance && count) {
+        nav_crowd_part(w);
     }
 }

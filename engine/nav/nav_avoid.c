@@ -18,6 +18,7 @@
 #define WALLS      4u
 #define WALL_TIME  0.2f // s within which a velocity must not lead off the surface
 #define PARALLEL   1e-6f
+#define PUSHES     3 // sweeps that part those who touch
 
 typedef struct flat {
     float x, z;
@@ -215,9 +216,8 @@ static half_plane plane_for(flat x, flat v, float radius, float dt, bool first) 
     return p;
 }
 
-static bool stands(const nav_agents *a, uint32_t row) {
-    return a->state[row] == NAV_AGENT_IDLE || a->state[row] == NAV_AGENT_ARRIVED;
-}
+// Who has arrived steps aside for others and comes back; who idles is not moved.
+static bool stands(const nav_agents *a, uint32_t row) { return a->state[row] == NAV_AGENT_IDLE; }
 
 // Perfect symmetry locks (a ring of agents that all want through its middle), so the wanted
 // velocity is turned aside: a little always, and more for each in its own measure while it waits.
@@ -257,11 +257,16 @@ static void avoid_one(nav_world *w, uint32_t row, float dt) {
     nav_agents *a = &w->agent;
     flat want = {a->wx[row], a->wz[row]}, now = {a->vx[row], a->vz[row]};
     a->nx[row] = want.x, a->nz[row] = want.z;
+    c->near_count[row] = 0;
     if (stands(a, row) || nav_agent_row_link(w, row) != NAV_NO_LINK) {
         return; // others go round it; and on a link there is no other way
     }
     near_list list = {.count = 0};
     find_near(c, a, row, &list);
+    c->near_count[row] = list.count;
+    for (uint32_t i = 0; i < list.count; i++) {
+        c->near[row * NEIGHBOURS + i] = c->row[list.slot[i]];
+    }
     if (list.count == 0) {
         return;
     }
@@ -270,7 +275,10 @@ static void avoid_one(nav_world *w, uint32_t row, float dt) {
     for (uint32_t i = 0; i < list.count; i++) {
         uint32_t k = list.slot[i], other = c->row[k];
         flat x = {c->px[k] - a->px[row], c->pz[k] - a->pz[row]};
-        flat v = sub(now, (flat){c->vx[k], c->vz[k]});
+        // Who has arrived makes room for where others want to go, though they cannot go there yet.
+        bool yields = a->state[row] == NAV_AGENT_ARRIVED;
+        flat theirs = yields ? (flat){a->wx[other], a->wz[other]} : (flat){c->vx[k], c->vz[k]};
+        flat v = sub(now, theirs);
         half_plane *p = &plane[planes++];
         *p = plane_for(x, v, (1.0f + MARGIN) * (a->radius[row] + c->radius[k]), dt, row < other);
         float share = stands(a, other) ? 1.0f : 0.5f; // who stands does not help
@@ -296,14 +304,16 @@ static void fit(nav_crowd *c, uint32_t count) {
         wanted *= 2;
     }
     nav_crowd_release(c);
-    size_t arrays = sizeof(float) * 9 * wanted + sizeof(uint32_t) * (wanted + 2ull * wanted + 1);
+    size_t arrays = sizeof(float) * 9 * wanted +
+                    sizeof(uint32_t) * ((2ull + NEIGHBOURS) * wanted + 2ull * wanted + 1);
     c->block = core_alloc(arrays);
     c->px = (float *)c->block;
     c->py = c->px + wanted, c->pz = c->py + wanted;
     c->vx = c->pz + wanted, c->vz = c->vx + wanted, c->radius = c->vz + wanted;
     c->cell_x = (int32_t *)(c->radius + wanted), c->cell_z = c->cell_x + wanted;
     c->row = (uint32_t *)(c->cell_z + wanted), c->key = c->row + wanted;
-    c->start = c->key + wanted;
+    c->near_count = c->key + wanted, c->near = c->near_count + wanted;
+    c->start = c->near + NEIGHBOURS * wanted;
     c->capacity = wanted;
     c->buckets = 2 * wanted;
 }
@@ -346,6 +356,47 @@ static void sort_by_cell(nav_crowd *c, const nav_agents *a, uint32_t count) {
         c->start[b] = c->start[b + 1];
     }
     c->start[c->buckets] = count;
+}
+
+// ---- what is left: those who touch all the same are moved apart ----
+
+// Where no velocity was free of collisions, or walls and limits kept an agent from it. Reads the
+// places of all, writes its own push.
+static void push_one(nav_world *w, uint32_t row) {
+    const nav_crowd *c = &w->crowd;
+    nav_agents *a = &w->agent;
+    flat push = {0, 0};
+    for (uint32_t i = 0; i < c->near_count[row]; i++) {
+        uint32_t other = c->near[row * NEIGHBOURS + i];
+        flat d = {a->px[row] - a->px[other], a->pz[row] - a->pz[other]};
+        float apart = a->radius[row] + a->radius[other], square = dot(d, d);
+        if (square < apart * apart && square > 0.0f) {
+            float size = core_sqrtf(square), share = stands(a, other) ? 1.0f : 0.5f;
+            push = mad(push, d, share * (apart - size) / size);
+        }
+    }
+    a->nx[row] = push.x, a->nz[row] = push.z;
+}
+static void push_some(void *ctx, uint32_t begin, uint32_t end, uint32_t chunk, uint32_t worker) {
+    (void)chunk, (void)worker;
+    for (uint32_t row = begin; row < end; row++) {
+        push_one(ctx, row);
+    }
+}
+
+void nav_crowd_part(nav_world *w) {
+    nav_agents *a = &w->agent;
+    uint32_t count = core_columns_count(&a->set);
+    for (int sweep = 0; sweep < PUSHES; sweep++) {
+        core_jobs_for(w->jobs, count, 256, push_some, w);
+        for (uint32_t row = 0; row < count; row++) {
+            bool pushed = a->nx[row] != 0.0f || a->nz[row] != 0.0f;
+            if (pushed && !a->driven[row]) {
+                a->px[row] += a->nx[row], a->pz[row] += a->nz[row];
+                nav_agent_keep_on_surface(w, row); // who has a wall behind leaves it to the other
+            }
+        }
+    }
 }
 
 typedef struct avoid_job {

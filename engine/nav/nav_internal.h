@@ -108,7 +108,8 @@ CORE_COLUMNS_DECLARE(nav_paths, NAV_PATH_COLUMNS)
     X(uint32_t, driven, CORE_COLUMN_STATE)                                                         \
     X(uint64_t, user, CORE_COLUMN_STATE)                                                           \
     X(core_handle, path, CORE_COLUMN_STATE)                                                        \
-    X(float, wx, 0) /* velocity wanted in this step */                                             \
+    X(uint32_t, gate, CORE_COLUMN_STATE) /* that it may use, + 1 */                                \
+    X(float, wx, 0)                      /* velocity wanted in this step */                        \
     X(float, wz, 0)                                                                                \
     X(float, slope, 0) /* height for ground covered */                                             \
     X(float, lift, 0)  /* m/s straight up */                                                       \
@@ -141,9 +142,10 @@ typedef struct nav_crowd {
     void *block; // all arrays below
     float *px, *py, *pz, *vx, *vz, *radius;
     int32_t *cell_x, *cell_z;
-    uint32_t *row;   // of the agent
-    uint32_t *key;   // [row] its bucket
-    uint32_t *start; // [buckets + 1]
+    uint32_t *row;               // of the agent
+    uint32_t *key;               // [row] its bucket
+    uint32_t *near_count, *near; // [row], [row*10] neighbours in this step
+    uint32_t *start;             // [buckets + 1]
     uint32_t capacity, buckets;
     float range, per_cell; // m within which neighbours count; cells per m
 } nav_crowd;
@@ -219,6 +221,7 @@ struct nav_world {
     nav_grids grid;
     nav_meshes mesh;
     nav_view_scratch views;
+    nav_buffer encounters; // of agents with gates
     nav_way way;
     nav_coarse_scratch coarse;
     nav_builder *builder; // made with the first surface
@@ -251,11 +254,15 @@ nav_path nav_path_renew(nav_world *world, nav_path old, nav_graph graph, nav_mes
 bool nav_path_outdated(const nav_world *world, uint32_t row); // its ground has changed
 void nav_path_check(nav_world *world, uint32_t row);          // invalid when its ground is gone
 void nav_paths_refresh(nav_world *world); // plans those whose ground has changed, but agents'
+// nav_gate.c
+void nav_gates_step(nav_world *world, float radius, float dt); // may change wanted velocities
 // nav_avoid.c
 void nav_crowd_avoid(nav_world *world, float dt); // wanted velocities to safe ones
+void nav_crowd_part(nav_world *world);            // moves apart who overlaps
 void nav_crowd_release(nav_crowd *crowd);
 // nav_agent.c
 void nav_agents_step(nav_world *world, float dt);
+void nav_agent_keep_on_surface(nav_world *world, uint32_t row);
 uint32_t nav_agent_row_link(const nav_world *world, uint32_t row);
 
 #endif

@@ -45,6 +45,10 @@ void nav_mesh_free(nav_mesh_data *m) {
                    m->turn_y,
                    m->turn_closed,
                    m->component_queue.data,
+                   m->gates.of_span.data,
+                   m->gates.gates.data,
+                   m->gates.length.data,
+                   m->gates.stack.data,
                    m->edge_owner,
                    m->link};
     for (size_t i = 0; i < CORE_COUNT_OF(own); i++) {

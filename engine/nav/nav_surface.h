@@ -98,6 +98,21 @@ typedef struct nav_tile {
     bool edges;    // its edges must be
 } nav_tile;
 
+// Narrow places (nav_gate.c).
+typedef struct nav_gate {
+    float entry_x, entry_z;          // where its users came in
+    float axis_x, axis_z;            // unit, out of it there
+    float since;                     // s since they began
+    uint32_t users, waiting, waited; // waiting: those from other sides; waited: in the last step
+    bool ever;
+} nav_gate;
+typedef struct nav_gates {
+    uint64_t version; // of the surface, + 1
+    float radius;
+    uint32_t count;
+    nav_buffer of_span, gates, length, stack;
+} nav_gates;
+
 typedef struct nav_mesh_link {
     nav_mesh_link_desc desc;
     bool exists;
@@ -124,6 +139,7 @@ typedef struct nav_mesh_data {
     float *turn_y;        // m
     uint8_t *turn_closed; // d: the closed cell there lies between directions d and d + 1
     uint32_t turn_room;
+    nav_gates gates;
     uint64_t components; // version + 1 for which they were found
     nav_buffer component_queue;
     nav_mesh_link *link; // [links]

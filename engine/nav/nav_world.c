@@ -52,6 +52,7 @@ void nav_world_destroy(nav_world *w) {
     }
     nav_builder_release(w);
     nav_coarse_release(&w->coarse);
+    core_free(w->encounters.data);
     core_free(w->way.point);
     core_free(w->way.link);
     nav_view_scratch_release(&w->views);
@@ -179,7 +180,7 @@ size_t nav_world_bytes(const nav_world *w) {
                  sizeof(uint64_t) * ((size_t)g->row_words * (g->height + 2) +
                                      (size_t)g->column_words * (g->width + 2));
     }
-    bytes += w->crowd.capacity * 12 * sizeof(float);
+    bytes += w->crowd.capacity * 24 * sizeof(float);
     for (uint32_t row = 0; row < core_columns_count(&w->mesh.set); row++) {
         bytes += nav_mesh_bytes(w->mesh.data[row]);
     }

@@ -50,7 +50,7 @@ function corsac.load()
   expectError("no node 25", graph.findPath, graph, 0, island)
   expectError("itself", graph.connect, graph, 3, 3)
   expectError("weight", graph.findPath, graph, 0, 1, { wieght = 2 })
-  expectError("either an entity", nav.newAgent, {})
+  expectError("an entity or a mover", nav.newAgent, {})
 
   path = nav.newPath(graph, { 0, 0, 0 }, { 8, 0, 0 })
   assert(path:getStatus() == "found" and path:getCost() == 8 and #path:getNodes() == 5)

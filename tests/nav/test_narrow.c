@@ -1,0 +1,100 @@
+// Places too narrow for two: streams that meet in a door take turns, nobody waits for ever, nobody
+// overlaps.
+#include "support/nav_crowd.h"
+#include "unity.h"
+
+static crowd c;
+
+void setUp(void) {}
+void tearDown(void) {
+    nav_world_destroy(c.world);
+    core_clear_error();
+}
+
+static void streams(int rows, int columns) {
+    for (int row = 0; row < rows; row++) {
+        for (int k = 0; k < columns; k++) {
+            float x = 2 + 0.9f * (float)row, z = 1.5f + 1.1f * (float)k;
+            crowd_send(&c, x, z, 24 - x, z);
+            crowd_send(&c, 24 - x, z, x, z);
+        }
+    }
+}
+
+static void two_meet_in_a_door(void) {
+    crowd_room(&c, 24, 12, 11.6f, 12.4f, 0.8f);
+    crowd_send(&c, 4, 6.1f, 20, 6.1f);
+    crowd_send(&c, 20, 6.1f, 4, 6.1f);
+    crowd_walk(&c, 40, 1);
+    crowd_report(&c, "two in a door");
+    TEST_ASSERT_EQUAL_INT(2, c.arrived);
+    TEST_ASSERT_TRUE(c.overlap <= 0.02f);
+    TEST_ASSERT_TRUE(c.time < 1.6f * 16 / 1.5f);
+}
+
+static void opposing_streams_share_a_door(void) {
+    crowd_room(&c, 24, 12, 11.6f, 12.4f, 0.8f);
+    streams(1, 8);
+    crowd_walk(&c, 90, 1);
+    crowd_report(&c, "8 against 8 in a door of 0.8 m");
+    TEST_ASSERT_EQUAL_INT(16, c.arrived);
+    TEST_ASSERT_TRUE(c.overlap <= 0.02f);
+    TEST_ASSERT_TRUE(c.time < 60);
+}
+
+static void a_long_passage_is_used_one_way_at_a_time(void) {
+    crowd_room(&c, 24, 12, 6, 18, 1.0f);
+    for (int i = 0; i < 4; i++) {
+        crowd_send(&c, 1 + (float)i, 4, 23 - (float)i, 4);
+        crowd_send(&c, 23 - (float)i, 8, 1 + (float)i, 8);
+    }
+    crowd_walk(&c, 120, 1);
+    crowd_report(&c, "4 against 4 in a passage of 12 m");
+    TEST_ASSERT_EQUAL_INT(8, c.arrived);
+    TEST_ASSERT_TRUE(c.overlap <= 0.02f);
+}
+
+// Wide enough for two streams: no turns are taken, the way is hardly longer than alone.
+static void wide_doors_are_no_gates(void) {
+    crowd_room(&c, 24, 12, 11.6f, 12.4f, 3.0f);
+    crowd_send(&c, 4, 6.1f, 20, 6.1f);
+    crowd_send(&c, 20, 6.1f, 4, 6.1f);
+    crowd_walk(&c, 40, 1);
+    TEST_ASSERT_EQUAL_INT(2, c.arrived);
+    TEST_ASSERT_TRUE(c.time < 1.05f * 16 / 1.5f + 0.5f);
+}
+
+// Who has arrived makes room and comes back.
+static void the_arrived_make_room(void) {
+    crowd_room(&c, 24, 12, 30, 30, 3.0f);
+    for (int i = 0; i < 14; i++) { // a fence across
+        crowd_send(&c, 12, 1 + 0.8f * (float)i, 12, 1 + 0.8f * (float)i);
+    }
+    crowd_walk(&c, 5, 1);
+    TEST_ASSERT_EQUAL_INT(14, c.arrived);
+    crowd_send(&c, 6, 6, 18, 6);
+    c.arrived = 0;
+    crowd_walk(&c, 40, 1);
+    crowd_report(&c, "through a fence of the arrived");
+    TEST_ASSERT_EQUAL_INT(15, c.arrived);
+    TEST_ASSERT_TRUE(c.overlap <= 0.02f);
+    for (int i = 0; i < 300; i++) {
+        nav_world_step(c.world, 1.0f / 60.0f);
+    }
+    for (int i = 0; i < 14; i++) {
+        core_vec3 p;
+        nav_agent_position(c.world, c.agent[i], &p);
+        TEST_ASSERT_FLOAT_WITHIN(0.21f, 12, p.x);
+        TEST_ASSERT_FLOAT_WITHIN(0.21f, 1 + 0.8f * (float)i, p.z);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(two_meet_in_a_door);
+    RUN_TEST(opposing_streams_share_a_door);
+    RUN_TEST(a_long_passage_is_used_one_way_at_a_time);
+    RUN_TEST(wide_doors_are_no_gates);
+    RUN_TEST(the_arrived_make_room);
+    return UNITY_END();
+}
