@@ -9,9 +9,11 @@ typedef struct bind_shape_options {
     core_vec3 size, normal, position;
     core_quat rotation;
     float radius, height, density, friction, restitution, rolling;
-    bind_numbers points, triangles;
+    bind_numbers points, triangles, heights, step, cells;
+    int64_t columns;
     bool one_sided;
     bool has_shape, has_size, has_radius, has_height, has_normal, has_points, has_triangles;
+    bool has_heights;
 } bind_shape_options;
 
 typedef struct bind_body_options {

@@ -1,5 +1,6 @@
 // corsac.phys: bodies.
 #include "script/bind_body.h"
+#include "script/bind_cloth.h"
 #include "script/bind_joint.h"
 #include "script/bind_mover.h"
 #include "script/bind_region.h"
@@ -73,6 +74,28 @@ static const char *const shape_names[] = {"sphere",   "box",  "plane", "capsule"
          "mesh: three corners each, counted from 1, counter-clockwise from the front",             \
          .optional = true,                                                                         \
          BIND_GIVEN(bind_shape_options, has_triangles)},                                           \
+        {"heights",                                                                                \
+         BIND_NUMBERS,                                                                             \
+         BIND_AT(bind_shape_options, heights),                                                     \
+         "mesh: a field of heights instead, row by row along +Z from its own place",               \
+         "m",                                                                                      \
+         .optional = true,                                                                         \
+         BIND_GIVEN(bind_shape_options, has_heights)},                                             \
+        {"columns", BIND_INT, BIND_AT(bind_shape_options, columns), "heights in a row, along +X",  \
+         .optional = true},                                                                        \
+        {"step",                                                                                   \
+         BIND_NUMBERS,                                                                             \
+         BIND_AT(bind_shape_options, step),                                                        \
+         "of heights: from point to point along x and z",                                          \
+         "m",                                                                                      \
+         .optional = true,                                                                         \
+         .def_text = "1"},                                                                         \
+        {"cells",                                                                                  \
+         BIND_NUMBERS,                                                                             \
+         BIND_AT(bind_shape_options, cells),                                                       \
+         "of heights: 0 for each cell that is a hole, row by row",                                 \
+         .optional = true,                                                                         \
+         .def_text = "no holes"},                                                                  \
         {"oneSided", BIND_BOOL, BIND_AT(bind_shape_options, one_sided),                            \
          "mesh: what comes from behind passes", .optional = true},                                 \
         {"density",         BIND_FLOAT, BIND_AT(bind_shape_options, density),                      \
@@ -178,6 +201,7 @@ static void check_fit(lua_State *L, const char *owner, const bind_shape_options 
     wrong = o->has_normal && o->shape != PHYS_PLANE ? "normal" : wrong;
     wrong = o->has_points && o->shape != PHYS_HULL && o->shape != PHYS_MESH ? "points" : wrong;
     wrong = o->has_triangles && o->shape != PHYS_MESH ? "triangles" : wrong;
+    wrong = o->has_heights && o->shape != PHYS_MESH ? "heights" : wrong;
     if (!o->has_shape) {
         bind_error(L,
                    "%s: the body has no shape; expected shape = \"sphere\", \"box\", \"plane\", "
@@ -191,7 +215,7 @@ static void check_fit(lua_State *L, const char *owner, const bind_shape_options 
                                             "radius and height",
                                             "radius and height",
                                             "points",
-                                            "points and triangles"};
+                                            "points and triangles, or heights"};
         bind_error(L, "%s: a %s has no \"%s\"; it takes %s", owner, shape, wrong, takes[o->shape]);
     }
     if (o->shape == PHYS_HULL && (o->points.count < 12 || o->points.count % 3 != 0)) {
@@ -230,6 +254,39 @@ static const core_soup_data *read_mesh(lua_State *L, const char *owner,
     return soup;
 }
 
+// Of heights, on the stack as long as the call.
+static void read_heights(lua_State *L, const char *owner, const bind_shape_options *o,
+                         phys_shape_desc *d) {
+    uint32_t columns = o->columns > 0 && o->columns < 1 << 20 ? (uint32_t)o->columns : 0;
+    uint32_t rows = columns ? o->heights.count / columns : 0;
+    if (columns < 2 || rows < 2 || o->heights.count % columns != 0) {
+        bind_error(L, "%s: %u heights in rows of %d (columns), expected whole rows, two at least",
+                   owner, (unsigned)o->heights.count, (int)o->columns);
+    }
+    uint32_t cells = (columns - 1) * (rows - 1);
+    if (o->has_points || o->has_triangles || (o->step.count != 0 && o->step.count != 2) ||
+        (o->cells.count != 0 && o->cells.count != cells)) {
+        bind_error(L,
+                   "%s: heights go without points and triangles, with a step {x, z} and with %u "
+                   "cells",
+                   owner, (unsigned)cells);
+    }
+    luaL_checkstack(L, 1, "heights");
+    core_heights_data *h = lua_newuserdata(L, sizeof *h + cells);
+    uint8_t *area = (uint8_t *)(h + 1);
+    for (uint32_t i = 0; i < o->cells.count; i++) {
+        area[i] = o->cells.items[i] == 0.0f ? PHYS_HOLE : 0;
+    }
+    bool even = o->step.count == 0;
+    *h = (core_heights_data){.columns = columns,
+                             .rows = rows,
+                             .step_x = even ? 1.0f : o->step.items[0],
+                             .step_z = even ? 1.0f : o->step.items[1],
+                             .height = o->heights.items};
+    d->heights = h;
+    d->cells = o->cells.count != 0 ? area : NULL;
+}
+
 static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_shape_options *o) {
     check_fit(L, owner, o);
     phys_shape_desc d = phys_shape_desc_default((phys_shape_type)o->shape);
@@ -246,7 +303,11 @@ static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_sh
     d.restitution = o->restitution;
     d.rolling = o->rolling;
     d.one_sided = o->one_sided;
-    d.mesh = o->shape == PHYS_MESH ? read_mesh(L, owner, o) : NULL;
+    if (o->has_heights) {
+        read_heights(L, owner, o, &d);
+    } else if (o->shape == PHYS_MESH) {
+        d.mesh = read_mesh(L, owner, o);
+    }
     return d;
 }
 
@@ -608,8 +669,14 @@ static const bind_module modules[] = {
     {"corsac.phys", "", bind_ask_functions},
     {"corsac.phys", "", bind_joint_functions},
     {"corsac.phys", "", bind_mover_functions},
+    {"corsac.phys", "", bind_cloth_functions},
     {0}};
-static const bind_type *const types[] = {&bind_body_type,  &bind_trigger_type, &bind_field_type,
-                                         &bind_joint_type, &bind_mover_type,   NULL};
+static const bind_type *const types[] = {&bind_body_type,
+                                         &bind_trigger_type,
+                                         &bind_field_type,
+                                         &bind_joint_type,
+                                         &bind_mover_type,
+                                         &bind_cloth_type,
+                                         NULL};
 
 const bind_room bind_phys_room = {"phys", modules, types};

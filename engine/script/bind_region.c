@@ -124,11 +124,11 @@ static int trigger_destroy(script *s, lua_State *L, void *args) {
 
 // ---- fields ----
 
-#define FIELD_TYPES "uniform|point"
+#define FIELD_TYPES "uniform|point|wind"
 typedef struct field_options {
     region_options region;
     int type;
-    core_vec3 acceleration, center;
+    core_vec3 acceleration, velocity, center;
     float strength, core;
 } field_options;
 typedef struct field_call {
@@ -139,6 +139,7 @@ static int new_field(script *s, lua_State *L, void *args) {
     const field_options *o = &((field_call *)args)->options;
     phys_field_desc desc = phys_field_desc_default((phys_field_type)o->type);
     desc.acceleration = o->acceleration;
+    desc.velocity = o->velocity;
     desc.center = o->center;
     desc.strength = o->strength;
     desc.core = o->core;
@@ -213,6 +214,8 @@ static const bind_arg field_fields[] = {
      .values = FIELD_TYPES},
     {"acceleration", BIND_VEC3, BIND_AT(field_options, acceleration), "uniform", "m/s^2",
      .optional = true},
+    {"velocity", BIND_VEC3, BIND_AT(field_options, velocity),
+     "wind: of the air, which drags cloth and ropes along", "m/s", .optional = true},
     {"center", BIND_VEC3, BIND_AT(field_options, center), "point: what it pulls towards", "m",
      .optional = true},
     {"strength", BIND_FLOAT, BIND_AT(field_options, strength),

@@ -307,6 +307,69 @@ function Mover:isDestroyed() end
 ---Removes it.
 function Mover:destroy() end
 
+---Particles that hold together: a sheet, or a rope with one column.
+---@class corsac.Cloth
+local Cloth = {}
+
+---Holds a particle where it is, to a body that moves it along and feels its pull.
+---@param column integer from 1
+---@param row integer from 1
+---@param body? corsac.Body without, the world
+function Cloth:hold(column, row, body) end
+
+---Holds a particle to a place of the world, to which it goes within the step.
+---@param column integer from 1
+---@param row integer from 1
+---@param x number
+---@param y number
+---@param z number
+function Cloth:pin(column, row, x, y, z) end
+
+---Lets a particle go.
+---@param column integer from 1
+---@param row integer from 1
+function Cloth:release(column, row) end
+
+---Gives a particle an impulse.
+---@param column integer from 1
+---@param row integer from 1
+---@param x number
+---@param y number
+---@param z number
+function Cloth:push(column, row, x, y, z) end
+
+---Where a particle is.
+---@param column integer from 1
+---@param row integer from 1
+---@return number x
+---@return number y
+---@return number z
+function Cloth:getPoint(column, row) end
+
+---Where all are: x, y, z of each, column by column, row after row.
+---@return number[] points
+function Cloth:getPoints() end
+
+---How many edges are torn.
+---@return integer count
+function Cloth:getTorn() end
+
+---How far edges are from their length, relative: mean and most.
+---@return number mean
+---@return number most
+function Cloth:getStretch() end
+
+---Whether it lies still and costs nothing.
+---@return boolean asleep
+function Cloth:isAsleep() end
+
+---Whether it was destroyed; every other method then raises an error.
+---@return boolean destroyed
+function Cloth:isDestroyed() end
+
+---Removes it.
+function Cloth:destroy() end
+
 ---A source of light.
 ---@class corsac.Light
 local Light = {}
@@ -1379,6 +1442,10 @@ corsac.scene = {}
 ---@field normal? number[] plane: direction of its free side
 ---@field points? number[] hull, mesh: its corners, x y z after x y z, m
 ---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field heights? number[] mesh: a field of heights instead, row by row along +Z from its own place, m
+---@field columns? integer heights in a row, along +X
+---@field step? number[] of heights: from point to point along x and z, m
+---@field cells? number[] of heights: 0 for each cell that is a hole, row by row
 ---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
@@ -1395,6 +1462,10 @@ corsac.scene = {}
 ---@field normal? number[] plane: direction of its free side
 ---@field points? number[] hull, mesh: its corners, x y z after x y z, m
 ---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field heights? number[] mesh: a field of heights instead, row by row along +Z from its own place, m
+---@field columns? integer heights in a row, along +X
+---@field step? number[] of heights: from point to point along x and z, m
+---@field cells? number[] of heights: 0 for each cell that is a hole, row by row
 ---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
@@ -1478,6 +1549,10 @@ function corsac.phys.getGravity() end
 ---@field normal? number[] plane: direction of its free side
 ---@field points? number[] hull, mesh: its corners, x y z after x y z, m
 ---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field heights? number[] mesh: a field of heights instead, row by row along +Z from its own place, m
+---@field columns? integer heights in a row, along +X
+---@field step? number[] of heights: from point to point along x and z, m
+---@field cells? number[] of heights: 0 for each cell that is a hole, row by row
 ---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
@@ -1494,6 +1569,10 @@ function corsac.phys.getGravity() end
 ---@field normal? number[] plane: direction of its free side
 ---@field points? number[] hull, mesh: its corners, x y z after x y z, m
 ---@field triangles? number[] mesh: three corners each, counted from 1, counter-clockwise from the front
+---@field heights? number[] mesh: a field of heights instead, row by row along +Z from its own place, m
+---@field columns? integer heights in a row, along +X
+---@field step? number[] of heights: from point to point along x and z, m
+---@field cells? number[] of heights: 0 for each cell that is a hole, row by row
 ---@field oneSided? boolean mesh: what comes from behind passes
 ---@field density? number mass per volume, kg/m^3
 ---@field friction? number Coulomb's coefficient
@@ -1559,8 +1638,9 @@ function corsac.phys.getCollisionRule(a, b) end
 function corsac.phys.newTrigger(options) end
 
 ---@class corsac.phys.newField.options
----@field type? "uniform"|"point" kind of field
+---@field type? "uniform"|"point"|"wind" kind of field
 ---@field acceleration? number[] uniform, m/s^2
+---@field velocity? number[] wind: of the air, which drags cloth and ropes along, m/s
 ---@field center? number[] point: what it pulls towards, m
 ---@field strength? number point: acceleration times distance squared; negative repels, m^3/s^2
 ---@field core? number point: inside this distance the pull falls to zero, m
@@ -1703,6 +1783,51 @@ function corsac.phys.getJointCount() end
 ---@param options corsac.phys.newMover.options the mover
 ---@return corsac.Mover mover
 function corsac.phys.newMover(options) end
+
+---@class corsac.phys.newCloth.options
+---@field columns integer particles across
+---@field rows integer particles down
+---@field position? number[] of the particle (1, 1), m
+---@field across number[] way from the first column to the last, m
+---@field down number[] way from the first row to the last, m
+---@field shear? number how far a diagonal gives, m/N
+---@field mass? number in all, kg
+---@field radius? number half the thickness, m
+---@field stretch? number how far an edge gives; 0: not at all, m/N
+---@field bend? number stiffness against bending; 0 for none, N/m
+---@field friction? number Coulomb's coefficient
+---@field damping? number loss of velocity, 1/s
+---@field drag? number of the air; 0 feels no wind
+---@field gravityScale? number factor on gravity
+---@field tearForce? number tears an edge; 0 for never, N
+---@field substeps? integer more are stiffer and cost more
+---@field layer? string name of its collision layer
+
+---Makes a sheet of cloth.
+---@param options corsac.phys.newCloth.options the cloth
+---@return corsac.Cloth cloth
+function corsac.phys.newCloth(options) end
+
+---@class corsac.phys.newRope.options
+---@field count integer particles
+---@field from number[] of the particle (1, 1), m
+---@field to number[] of the last one, m
+---@field mass? number in all, kg
+---@field radius? number half the thickness, m
+---@field stretch? number how far an edge gives; 0: not at all, m/N
+---@field bend? number stiffness against bending; 0 for none, N/m
+---@field friction? number Coulomb's coefficient
+---@field damping? number loss of velocity, 1/s
+---@field drag? number of the air; 0 feels no wind
+---@field gravityScale? number factor on gravity
+---@field tearForce? number tears an edge; 0 for never, N
+---@field substeps? integer more are stiffer and cost more
+---@field layer? string name of its collision layer
+
+---Makes a rope: a cloth of one column, its particles (1, 1) to (1, count).
+---@param options corsac.phys.newRope.options the rope
+---@return corsac.Cloth rope
+function corsac.phys.newRope(options) end
 
 ---Camera, lights and what is drawn over the frame.
 corsac.gfx = {}
