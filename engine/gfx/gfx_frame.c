@@ -82,6 +82,14 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     gfx_stream_bind(&d->view_block, GL_UNIFORM_BUFFER, GFX_UBO_VIEW, sizeof *b, d->frame);
 }
 
+// For what knows pixels only.
+static void upload_screen(gfx_device *d) {
+    struct gfx_view_block *b = gfx_stream_begin(&d->view_block, sizeof *b, d->frame);
+    float w = (float)d->width, h = (float)d->height;
+    *b = (struct gfx_view_block){.viewport = {w, h, 1.0f / w, 1.0f / h}};
+    gfx_stream_bind(&d->view_block, GL_UNIFORM_BUFFER, GFX_UBO_VIEW, sizeof *b, d->frame);
+}
+
 // ---- passes ----
 
 typedef struct frame { // one view that is drawn
@@ -381,6 +389,7 @@ static bool draw_views(gfx_device *d, gfx_world *world) {
         }
     }
     begin_turn(d); // for what is drawn over all of them
+    upload_screen(d);
     gfx_post_begin(d, &d->targets.picture);
     ok = ok && gfx_quads_draw(d, world);
     end_turn(d);

@@ -116,7 +116,9 @@ bool gfx_targets_fit(gfx_device *d, const gfx_world *world, gfx_targets *t) {
 }
 
 void gfx_targets_add_image(gfx_targets *t) {
+    const float black[4] = {0.0f, 0.0f, 0.0f, 1.0f}; // until it is drawn: a screen may see itself
     make_target(&t->image, GL_RGBA8, t->width, t->height, GL_LINEAR);
+    glClearNamedFramebufferfv(t->image.name, GL_COLOR, 0, black);
     glGenTextures(1, &t->light);
     glTextureView(t->light, GL_TEXTURE_2D, t->image.texture, GL_SRGB8_ALPHA8, 0, 1, 0, 1);
     glTextureParameteri(t->light, GL_TEXTURE_MIN_FILTER, GL_LINEAR);

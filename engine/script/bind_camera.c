@@ -97,7 +97,7 @@ typedef struct view_options {
     camera_options camera;
     bind_numbers rect;
     const char *texture;
-    double width, height;
+    bind_numbers size;
 } view_options;
 typedef struct view_call {
     view_options options;
@@ -117,8 +117,16 @@ static int new_view(script *s, lua_State *L, void *args) {
     memcpy(desc.rect, o->rect.count ? o->rect.items : desc.rect, sizeof desc.rect);
     desc.camera = camera_of(L, "corsac.gfx.newView", &o->camera, desc.camera);
     desc.target = o->texture;
-    desc.width = (uint32_t)o->width;
-    desc.height = (uint32_t)o->height;
+    desc.width = desc.height = 512;
+    if (o->size.count) {
+        if (o->size.count != 2 || !(o->size.items[0] >= 1.0f && o->size.items[0] <= 16384.0f) ||
+            !(o->size.items[1] >= 1.0f && o->size.items[1] <= 16384.0f)) {
+            bind_error(L, "corsac.gfx.newView: options.size: expected {width, height}, each in "
+                          "1..16384 pixels");
+        }
+        desc.width = (uint32_t)o->size.items[0];
+        desc.height = (uint32_t)o->size.items[1];
+    }
     gfx_viewport view = gfx_viewport_create(scene_gfx(s->scene), &desc);
     if (core_handle_is_null(view)) {
         bind_fail(L);
@@ -185,10 +193,8 @@ static const bind_arg view_fields[] = {
     {"texture", BIND_STRING, BIND_AT(view_options, texture),
      "name of a texture in place of the picture: maps and images have it as \"target:NAME\"",
      .optional = true},
-    {"width", BIND_NUMBER, BIND_AT(view_options, width), "of the texture", "pixels", BIND_BETWEEN,
-     .min = 1, .max = 16384, .optional = true, .def = 512},
-    {"height", BIND_NUMBER, BIND_AT(view_options, height), "of the texture", "pixels", BIND_BETWEEN,
-     .min = 1, .max = 16384, .optional = true, .def = 512},
+    {"size", BIND_NUMBERS, BIND_AT(view_options, size), "width, height of the texture", "pixels",
+     .optional = true, .def_text = "{512, 512}"},
     {0}};
 
 static const bind_fn view_methods[] = {

@@ -1974,8 +1974,7 @@ function corsac.gfx.getCamera() end
 ---@field height? number of what is seen without perspective; 0: with perspective, m
 ---@field rect? number[] x, y, width, height: shares of the picture, origin top left
 ---@field texture? string name of a texture in place of the picture: maps and images have it as "target:NAME"
----@field width? number of the texture, pixels
----@field height? number of the texture, pixels
+---@field size? number[] width, height of the texture, pixels
 
 ---Makes a view: a part of the picture, in place of what the camera sees, or a texture.
 ---@param options corsac.gfx.newView.options the view

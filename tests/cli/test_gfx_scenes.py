@@ -79,6 +79,26 @@ class GfxScenes(SceneCase):
                            ("sse2", ("--simd", "sse2", "--threads", 1))):
             self.assertEqual(self.shot("particles", name, "--steps", 40, *more).read_bytes(), alone, name)
 
+    def test_ao(self):
+        self.golden("ao")
+
+    def test_bloom(self):
+        self.golden("bloom")
+
+    def test_split(self):
+        self.golden("split")
+
+    def test_transparent(self):
+        self.golden("transparent")
+
+    def test_an_effect_of_no_strength_is_not_there(self):
+        """The receipt shows it: the passes, shaders and bytes of a scene that never named it."""
+        def passes(*args):
+            done = corsac("run", SCENES / "ao.lua", *SMALL, "--receipt", "--shot", self.dir / "x.png", *args)
+            return next(line for line in done.out.splitlines() if "passes" in line)
+        self.assertNotEqual(passes(), passes("--set", "ao=0"))
+        self.assertEqual(passes("--set", "ao=0"), passes("--set", "ao=0", "--set", "gfx.bloom=0"))
+
     def test_forward_and_clustered_give_one_picture(self):
         args = ("--steps", 2, "--set", "n=200", "--set")
         forward = self.shot("lights", "forward", *args, "method=forward")
