@@ -2,12 +2,14 @@
 
     python3 xkeys.py "wait:1.5 key:F1 down:d wait:0.5 up:d move:10,20 key:Escape" PROGRAM ARGS...
 
-Exits with the program's code; 77 where the X test library is missing.
+saw:TEXT*2 waits until the program has written TEXT (without blanks) twice to its standard error, so that
+a busy machine is waited for. Exits with the program's code; 77 where the X test library is missing.
 """
 
 import ctypes
 import subprocess
 import sys
+import threading
 import time
 
 
@@ -35,11 +37,26 @@ def main():
         code = x11.XKeysymToKeycode(display, ctypes.c_ulong(x11.XStringToKeysym(name.encode())))
         send(xtst.XTestFakeKeyEvent, ctypes.c_uint(code), ctypes.c_int(down))
 
-    program = subprocess.Popen(sys.argv[2:])
+    program = subprocess.Popen(sys.argv[2:], stderr=subprocess.PIPE, text=True, errors="replace")
+    said = []
+
+    def listen():
+        for line in program.stderr:
+            said.append(line)
+            sys.stderr.write(line)
+            sys.stderr.flush()
+
+    listener = threading.Thread(target=listen, daemon=True)
+    listener.start()
     for word in sys.argv[1].split():
         what, _, rest = word.partition(":")
         if what == "wait":
             time.sleep(float(rest))
+        elif what == "saw":
+            text, _, times = rest.partition("*")
+            deadline = time.monotonic() + 40
+            while "".join(said).count(text) < int(times or 1) and time.monotonic() < deadline:
+                time.sleep(0.02)
         elif what == "move":
             x, y = map(int, rest.split(","))
             send(xtst.XTestFakeMotionEvent, ctypes.c_int(-1), ctypes.c_int(x), ctypes.c_int(y))
@@ -52,7 +69,9 @@ def main():
             if what in ("up", "key"):
                 key(rest, 0)
     try:
-        sys.exit(program.wait(30))
+        code = program.wait(30)
+        listener.join(5)
+        sys.exit(code)
     except subprocess.TimeoutExpired:
         program.kill()
         sys.exit(124)
