@@ -130,7 +130,17 @@ void gfx_world_set_background(gfx_world *world, float r, float g, float b);
 // Built-in unit meshes: "box" (edge 1), "sphere" (radius 0.5), "capsule" (radius 0.5, segment 1),
 // "cylinder" (radius 0.5, height 1), "plane" (1 x 1, +Y). Null + core_fail names the nearest.
 gfx_mesh gfx_mesh_builtin(gfx_world *world, const char *name);
-gfx_mesh gfx_mesh_create(gfx_world *world, const core_mesh_data *data); // copies
+// Copies. From 512 triangles on it gets coarser levels of detail (quadric error metrics), each
+// drawn where its surface is within half a pixel of the finest; `gfx.levels` = off draws the finest
+// alone.
+gfx_mesh gfx_mesh_create(gfx_world *world, const core_mesh_data *data);
+typedef struct gfx_mesh_level {
+    uint32_t triangles;
+    float error; // m that its surface may be off the finest one
+} gfx_mesh_level;
+// Levels from fine to coarse; out[capacity] gets the first, may be NULL. 0 for a stale handle.
+uint32_t gfx_mesh_levels(const gfx_world *world, gfx_mesh mesh, gfx_mesh_level *out,
+                         uint32_t capacity);
 // Instances of a destroyed mesh are no longer drawn. Built-in meshes stay: false.
 bool gfx_mesh_destroy(gfx_world *world, gfx_mesh mesh);
 

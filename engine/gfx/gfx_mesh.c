@@ -1,5 +1,7 @@
-// Meshes: checked and packed copies of mesh data, and the built-in unit shapes.
+// Meshes: checked and packed copies of mesh data, their levels of detail, and the built-in unit
+// shapes.
 #include "gfx/gfx_internal.h"
+#include "gfx/gfx_simplify.h"
 
 #include <math.h>
 #include <string.h>
@@ -129,10 +131,7 @@ static void bound(gfx_mesh_store *store) {
     store->radius = core_sqrtf(r2) * 1.000001f; // the square root rounds
 }
 
-gfx_mesh gfx_mesh_create(gfx_world *world, const core_mesh_data *data) {
-    if (!check_mesh(data)) {
-        return CORE_NULL_HANDLE;
-    }
+static gfx_mesh make_mesh(gfx_world *world, const core_mesh_data *data) {
     gfx_mesh mesh = core_columns_add(&world->meshes.set);
     uint32_t row = core_columns_row(&world->meshes.set, mesh);
     if (row == CORE_NO_ROW) {
@@ -164,18 +163,142 @@ gfx_mesh gfx_mesh_create(gfx_world *world, const core_mesh_data *data) {
     return mesh;
 }
 
-bool gfx_mesh_destroy(gfx_world *world, gfx_mesh mesh) {
+static gfx_mesh_store *store_of(gfx_world *world, gfx_mesh mesh) {
     uint32_t row = core_columns_row(&world->meshes.set, mesh);
-    if (row == CORE_NO_ROW) {
+    return row == CORE_NO_ROW ? NULL : &world->meshes.store[row];
+}
+
+bool gfx_mesh_destroy(gfx_world *world, gfx_mesh mesh) {
+    gfx_mesh_store *s = store_of(world, mesh);
+    if (!s) {
         return core_fail("gfx_mesh_destroy: the handle is stale or null");
     }
-    if (world->meshes.store[row].builtin) {
+    if (s->builtin) {
         return core_fail("gfx_mesh_destroy: built-in meshes stay for the life of their world");
     }
-    world->heap_bytes -= store_bytes(&world->meshes.store[row]);
-    gfx_mesh_store_release(&world->meshes.store[row]);
+    while (s) { // and its coarser levels
+        gfx_mesh coarser = s->coarser;
+        world->heap_bytes -= store_bytes(s);
+        gfx_mesh_store_release(s);
+        core_columns_remove(&world->meshes.set, mesh, NULL, NULL);
+        mesh = coarser;
+        s = store_of(world, mesh);
+    }
     world->mesh_version++;
-    return core_columns_remove(&world->meshes.set, mesh, NULL, NULL);
+    return true;
+}
+
+// ---- levels of detail ----
+
+enum { LEVELS_FROM = 512, LEAST_TRIANGLES = 32, MESH_LEVELS = 6 };
+
+// The vertices that some triangles use, in order of their first use; map[vertex]: scratch.
+typedef struct part {
+    core_mesh_data data;
+    float *memory;
+    uint16_t *joint;
+    uint32_t *index;
+} part;
+
+static float *copy_part(float *to, const float *from, uint32_t width, const uint32_t *used,
+                        uint32_t count) {
+    for (uint32_t i = 0; from && i < count; ++i) {
+        memcpy(to + (size_t)width * i, from + (size_t)width * used[i], width * sizeof *to);
+    }
+    return from ? to : NULL;
+}
+
+static part make_part(const core_mesh_data *d, const uint32_t *index, uint32_t indices,
+                      uint32_t *map, uint32_t *used) {
+    part p = {.data = {.index_count = indices}};
+    p.index = core_alloc(indices * sizeof *p.index);
+    memset(map, 0xff, d->vertex_count * sizeof *map);
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < indices; ++i) {
+        if (map[index[i]] == UINT32_MAX) {
+            used[n] = index[i];
+            map[index[i]] = n++;
+        }
+        p.index[i] = map[index[i]];
+    }
+    p.memory = core_alloc((size_t)n * 20 * sizeof *p.memory);
+    p.joint = core_alloc((size_t)n * 4 * sizeof *p.joint);
+    float *at = p.memory;
+    p.data.position = copy_part(at, d->position, 3, used, n);
+    p.data.normal = copy_part(at + 3 * (size_t)n, d->normal, 3, used, n);
+    p.data.tangent = copy_part(at + 6 * (size_t)n, d->tangent, 4, used, n);
+    p.data.uv = copy_part(at + 10 * (size_t)n, d->uv, 2, used, n);
+    p.data.color = copy_part(at + 12 * (size_t)n, d->color, 4, used, n);
+    p.data.weight = copy_part(at + 16 * (size_t)n, d->weight, 4, used, n);
+    for (uint32_t i = 0; d->joint && i < n; ++i) {
+        memcpy(p.joint + 4 * (size_t)i, d->joint + 4 * (size_t)used[i], 4 * sizeof *p.joint);
+    }
+    p.data.joint = d->joint ? p.joint : NULL;
+    p.data.vertex_count = n;
+    p.data.index = p.index;
+    return p;
+}
+
+static void free_part(part *p) {
+    core_free(p->memory);
+    core_free(p->joint);
+    core_free(p->index);
+}
+
+// Each level has half of the triangles of the one before, as long as that is worth a level.
+static void make_levels(gfx_world *world, gfx_mesh finest, const core_mesh_data *data) {
+    gfx_simplifier *s = gfx_simplifier_create(data);
+    uint32_t *map = core_alloc(data->vertex_count * sizeof *map);
+    uint32_t *used = core_alloc(data->vertex_count * sizeof *used);
+    uint32_t triangles = data->index_count / 3;
+    float radius = store_of(world, finest)->radius;
+    gfx_mesh last = finest;
+    for (int level = 0; level < MESH_LEVELS && triangles >= 2 * LEAST_TRIANGLES; ++level) {
+        uint32_t left = gfx_simplify(s, triangles / 2, 0.1f * radius);
+        if (left > triangles * 3 / 4 || left == 0) {
+            break;
+        }
+        part p = make_part(data, gfx_simplifier_index(s), 3 * left, map, used);
+        gfx_mesh mesh = make_mesh(world, &p.data);
+        free_part(&p);
+        gfx_mesh_store *store = store_of(world, mesh);
+        if (!store) {
+            break;
+        }
+        store->deviation = gfx_simplifier_error(s) / CORE_MAX(radius, 1e-12f);
+        store_of(world, last)->coarser = mesh;
+        last = mesh;
+        triangles = left;
+    }
+    core_free(map);
+    core_free(used);
+    gfx_simplifier_destroy(s);
+}
+
+gfx_mesh gfx_mesh_create(gfx_world *world, const core_mesh_data *data) {
+    if (!check_mesh(data)) {
+        return CORE_NULL_HANDLE;
+    }
+    gfx_mesh mesh = make_mesh(world, data);
+    if (!core_handle_is_null(mesh) && data->index_count / 3 >= LEVELS_FROM) {
+        make_levels(world, mesh, data);
+    }
+    return mesh;
+}
+
+uint32_t gfx_mesh_levels(const gfx_world *world, gfx_mesh mesh, gfx_mesh_level *out,
+                         uint32_t capacity) {
+    uint32_t count = 0, row = core_columns_row(&world->meshes.set, mesh);
+    float radius = row == CORE_NO_ROW ? 0.0f : world->meshes.store[row].radius;
+    while (row != CORE_NO_ROW) {
+        const gfx_mesh_store *s = &world->meshes.store[row];
+        if (out && count < capacity) {
+            out[count] = (gfx_mesh_level){s->index_count / 3, s->deviation * radius};
+        }
+        count++;
+        row = core_columns_row(&world->meshes.set, s->coarser);
+    }
+    return count;
 }
 
 // ---- built-in shapes: surfaces of revolution round Y and quads, written into fixed arrays ----
@@ -331,7 +454,7 @@ static gfx_mesh make_level(gfx_world *world, int which, int level, gfx_mesh coar
                            .tangent = s->tangent,
                            .uv = s->uv,
                            .index = s->index};
-    gfx_mesh mesh = gfx_mesh_create(world, &data);
+    gfx_mesh mesh = make_mesh(world, &data);
     uint32_t row = core_columns_row(&world->meshes.set, mesh);
     if (row != CORE_NO_ROW) {
         gfx_mesh_store *store = &world->meshes.store[row];
