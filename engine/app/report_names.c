@@ -20,13 +20,18 @@ const app_accuracy_name app_accuracy_names[APP_ACCURACY_COUNT] = {
 };
 
 const char *const app_count_rooms[CORE_COUNT_TOTAL] = {
-    [CORE_COUNT_BODIES] = "phys",   [CORE_COUNT_AWAKE] = "phys",     [CORE_COUNT_SHAPES] = "phys",
-    [CORE_COUNT_PAIRS] = "phys",    [CORE_COUNT_CONTACTS] = "phys",  [CORE_COUNT_JOINTS] = "phys",
-    [CORE_COUNT_ISLANDS] = "phys",  [CORE_COUNT_TRIGGERS] = "phys",  [CORE_COUNT_LIGHTS] = "gfx",
-    [CORE_COUNT_CLUSTERS] = "gfx",  [CORE_COUNT_LIGHT_REFS] = "gfx", [CORE_COUNT_DRAWS] = "gfx",
-    [CORE_COUNT_TRIANGLES] = "gfx", [CORE_COUNT_SKELETONS] = "anim", [CORE_COUNT_BONES] = "anim",
-    [CORE_COUNT_NAV_NODES] = "nav", [CORE_COUNT_AGENTS] = "nav",     [CORE_COUNT_PATHS] = "nav",
-    [CORE_COUNT_VOICES] = "audio",  [CORE_COUNT_ENTITIES] = "scene", [CORE_COUNT_LUA_KB] = "script",
+    [CORE_COUNT_BODIES] = "phys",         [CORE_COUNT_AWAKE] = "phys",
+    [CORE_COUNT_SHAPES] = "phys",         [CORE_COUNT_PAIRS] = "phys",
+    [CORE_COUNT_CONTACTS] = "phys",       [CORE_COUNT_JOINTS] = "phys",
+    [CORE_COUNT_ISLANDS_COARSE] = "phys", [CORE_COUNT_ISLANDS_FINE] = "phys",
+    [CORE_COUNT_SUBSTEPS_MAX] = "phys",   [CORE_COUNT_ISLANDS] = "phys",
+    [CORE_COUNT_TRIGGERS] = "phys",       [CORE_COUNT_LIGHTS] = "gfx",
+    [CORE_COUNT_CLUSTERS] = "gfx",        [CORE_COUNT_LIGHT_REFS] = "gfx",
+    [CORE_COUNT_DRAWS] = "gfx",           [CORE_COUNT_TRIANGLES] = "gfx",
+    [CORE_COUNT_SKELETONS] = "anim",      [CORE_COUNT_BONES] = "anim",
+    [CORE_COUNT_NAV_NODES] = "nav",       [CORE_COUNT_AGENTS] = "nav",
+    [CORE_COUNT_PATHS] = "nav",           [CORE_COUNT_VOICES] = "audio",
+    [CORE_COUNT_ENTITIES] = "scene",      [CORE_COUNT_LUA_KB] = "script",
 };
 
 // The word before the first dot; "metrics" is the program's own and always there.

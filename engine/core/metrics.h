@@ -32,6 +32,9 @@
     X(CONTACTS, "contacts")                                                                        \
     X(JOINTS, "joints")                                                                            \
     X(ISLANDS, "islands")                                                                          \
+    X(ISLANDS_COARSE, "islands_coarse") /* with fewer substeps than the solver's default */        \
+    X(ISLANDS_FINE, "islands_fine")     /* with more */                                            \
+    X(SUBSTEPS_MAX, "substeps_max")     /* most that any island took */                            \
     X(TRIGGERS, "triggers")                                                                        \
     X(LIGHTS, "lights")                                                                            \
     X(CLUSTERS, "clusters")                                                                        \

@@ -36,6 +36,7 @@ typedef struct island {
     float ratio, rate; // rate: squared, 1/s^2
     uint32_t count, joints, anchors;
     bool restless, touched, branched, bars;
+    uint8_t level;
 } island;
 
 static uint32_t find_root(uint32_t *parent, uint32_t i) {
@@ -276,6 +277,7 @@ void phys_islands_update(phys_world *w, float dt) {
     uint32_t n = core_columns_count(&b->set);
     bool sleeps = w->sleep && w->solver->sleeps, levels = w->substeps == 0 && w->solver->sleeps;
     w->islands = 0;
+    memset(w->level_islands, 0, sizeof w->level_islands);
     if (!sleeps && !levels) {
         memset(b->level, 0, n);
         return;
@@ -305,10 +307,17 @@ void phys_islands_update(phys_world *w, float dt) {
             continue;
         }
         uint32_t root = find_root(parent, i);
-        b->level[i] = levels ? island_level(w, &sum[root], dt) : 0;
-        if (sleeps && !sum[root].restless) {
-            b->level[i] = PHYS_LEVELS; // marked: flags are read until all are looked at
+        island *s = &sum[root];
+        if (root == i) { // before any other of the island: the lowest row leads
+            bool rests = sleeps && !s->restless;
+            s->level = rests    ? PHYS_LEVELS // marked: flags are read until all are looked at
+                       : levels ? island_level(w, s, dt)
+                                : PHYS_LEVEL_DEFAULT;
+            if (!rests) {
+                w->level_islands[s->level]++;
+            }
         }
+        b->level[i] = s->level;
     }
     for (uint32_t i = 0; i < n; i++) {
         if (b->level[i] == PHYS_LEVELS) {

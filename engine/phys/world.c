@@ -315,6 +315,7 @@ bool phys_world_step(phys_world *w, float dt) {
     phys_events_begin(w);
     if (all_at_rest(w)) {
         w->islands = 0;
+        memset(w->level_islands, 0, sizeof w->level_islands);
         w->time += (double)dt;
         phys_cloths_update(w, dt, false);
         phys_movers_update(w, dt, true);
@@ -386,6 +387,21 @@ size_t phys_world_bytes(const phys_world *w) {
                (sizeof(uint32_t) + sizeof(phys_box) / 2);
 }
 
+static void count_levels(const phys_world *w, core_metrics *m) {
+    uint32_t coarse = 0, fine = 0;
+    int most = w->substeps, usual = phys_level_substeps(w, PHYS_LEVEL_DEFAULT);
+    for (uint32_t level = 0; level < PHYS_LEVELS; level++) {
+        int substeps = phys_level_substeps(w, level);
+        uint32_t n = w->level_islands[level];
+        coarse += substeps < usual ? n : 0;
+        fine += substeps > usual ? n : 0;
+        most = n != 0 ? CORE_MAX(most, substeps) : most;
+    }
+    core_metrics_set(m, CORE_COUNT_ISLANDS_COARSE, coarse);
+    core_metrics_set(m, CORE_COUNT_ISLANDS_FINE, fine);
+    core_metrics_set(m, CORE_COUNT_SUBSTEPS_MAX, most);
+}
+
 void phys_world_counts(const phys_world *w, core_metrics *m) {
     uint32_t n = phys_body_count(w), awake = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -399,6 +415,7 @@ void phys_world_counts(const phys_world *w, core_metrics *m) {
     core_metrics_set(m, CORE_COUNT_CONTACTS, w->touching);
     core_metrics_set(m, CORE_COUNT_JOINTS, phys_joint_count(w));
     core_metrics_set(m, CORE_COUNT_ISLANDS, w->islands);
+    count_levels(w, m);
     core_metrics_set(m, CORE_COUNT_TRIGGERS, core_columns_count(&w->triggers.set));
 }
 

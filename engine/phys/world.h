@@ -334,8 +334,9 @@ struct phys_world {
     uint32_t stamp;                    // number of the broad phase, marks living pairs
     const phys_integrator *integrator; // of bodies that touch nothing; NULL: the solver's own
     bool sleep;
-    uint32_t islands;  // of the last step
-    uint32_t touching; // contacts of the last step
+    uint32_t islands;                    // of the last step
+    uint32_t level_islands[PHYS_LEVELS]; // awake ones
+    uint32_t touching;                   // contacts of the last step
     // Accuracy: the first sample since bodies were last added, moved or removed, and the work that
     // forces did since.
     bool measured;

@@ -17,7 +17,7 @@ end
 
 STAGES = ("script scene phys phys.fields phys.broad phys.narrow phys.islands phys.solve phys.ccd anim nav "
           "audio metrics gfx.cull gfx.cluster gfx.draw gfx.gpu").split()
-COUNTS = ("bodies awake shapes pairs contacts joints islands triggers lights clusters light_refs draws "
+COUNTS = ("bodies awake shapes pairs contacts joints islands islands_coarse islands_fine substeps_max triggers lights clusters light_refs draws "
           "triangles skeletons bones nav_nodes agents paths voices entities lua_kb").split()
 ACCURACY = ("penetration_max_m penetration_mean_m energy_j energy_drift momentum_drift joint_error_max_m "
             "tunnelled nan anim_error_max_m path_ratio_max").split()

@@ -133,7 +133,7 @@ static void steps_allocate_nothing(void) {
 
 static void names_are_the_contract(void) {
     TEST_ASSERT_EQUAL_INT(17, CORE_STAGE_TOTAL);
-    TEST_ASSERT_EQUAL_INT(21, CORE_COUNT_TOTAL);
+    TEST_ASSERT_EQUAL_INT(24, CORE_COUNT_TOTAL);
     TEST_ASSERT_EQUAL_STRING("script", core_stage_name(CORE_STAGE_SCRIPT));
     TEST_ASSERT_EQUAL_STRING("phys.islands", core_stage_name(CORE_STAGE_PHYS_ISLANDS));
     TEST_ASSERT_EQUAL_STRING("gfx.gpu", core_stage_name(CORE_STAGE_GFX_GPU));

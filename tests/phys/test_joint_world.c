@@ -99,6 +99,20 @@ static void chain_energy(float swing) {
 static void test_chain_keeps_energy(void) { chain_energy(0); }
 static void test_chain_keeps_energy_sideways(void) { chain_energy(0.4f); }
 
+// Substeps follow the load: few for a calm chain, more where a heavy end pulls its links taut.
+static void chain_substeps(float ratio, int steps, int coarse, int fine, int most) {
+    hang_chain(w, 20, ratio, 0);
+    run(w, steps);
+    core_metrics *m = core_metrics_create();
+    phys_world_counts(w, m);
+    TEST_ASSERT_EQUAL_INT(coarse, (int)core_metrics_get(m, CORE_COUNT_ISLANDS_COARSE));
+    TEST_ASSERT_EQUAL_INT(fine, (int)core_metrics_get(m, CORE_COUNT_ISLANDS_FINE));
+    TEST_ASSERT_EQUAL_INT(most, (int)core_metrics_get(m, CORE_COUNT_SUBSTEPS_MAX));
+    core_metrics_destroy(m);
+}
+static void test_chain_calm_is_coarse(void) { chain_substeps(1, 20, 1, 0, 4); }
+static void test_chain_taut_is_fine(void) { chain_substeps(1000, 40, 0, 1, 16); }
+
 // The force of the top joint carries what hangs on it.
 static void test_chain_force(void) {
     phys_body b[3];
@@ -427,6 +441,8 @@ int main(void) {
     RUN_TEST(test_chain_keeps_energy);
     RUN_TEST(test_chain_keeps_energy_sideways);
     RUN_TEST(test_chain_force);
+    RUN_TEST(test_chain_calm_is_coarse);
+    RUN_TEST(test_chain_taut_is_fine);
     RUN_TEST(test_chain_very_heavy);
     RUN_TEST(test_pendulum_height);
     RUN_TEST(test_hub);
