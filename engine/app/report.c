@@ -68,7 +68,8 @@ void app_report_user(app_report *r, const char *name, double value) {
     r->user_count = CORE_MAX(r->user_count, i + 1);
 }
 
-#define APP_ANIM_SAMPLE 8 // instances judged in double precision at each sample
+#define APP_PATH_SAMPLE 32 // paths searched again at each sample
+#define APP_ANIM_SAMPLE 8  // instances judged in double precision at each sample
 
 static void note(app_report *r, app_accuracy_id id, double value) {
     r->accuracy[id] = value;
@@ -80,12 +81,16 @@ static void note(app_report *r, app_accuracy_id id, double value) {
 void app_report_sample(app_report *r, scene *s) {
     phys_world *world = scene_phys_if(s);
     anim_world *anim = scene_anim_if(s);
-    if ((!world && !anim) || r->accuracy_off) {
+    nav_world *nav = scene_nav_if(s);
+    if ((!world && !anim && !nav) || r->accuracy_off) {
         return;
     }
     core_stage_begin(r->metrics, CORE_STAGE_METRICS);
     if (anim) {
         note(r, APP_ANIM_ERROR, anim_world_error_max(anim, APP_ANIM_SAMPLE));
+    }
+    if (nav) {
+        note(r, APP_PATH_RATIO, nav_world_path_ratio_max(nav, APP_PATH_SAMPLE));
     }
     if (!world) {
         core_stage_end(r->metrics, CORE_STAGE_METRICS);

@@ -33,11 +33,15 @@ nav_world *nav_world_create(const nav_world_desc *desc); // NULL + core_fail
 void nav_world_destroy(nav_world *world);
 // Plans paths whose graph changed, then moves agents by dt seconds, finite, > 0, <= 1.
 bool nav_world_step(nav_world *world, float dt);
-// Settings: "heuristic" (euclid, octile, zero), "weight" (1..10), "avoidance" (orca, none).
+// Settings: "heuristic" (euclid, octile, zero), "weight" (1..10), "avoidance" (orca, none),
+// "slice" (views that paths across surfaces may expand in a step, all together; 0: at once).
 bool nav_world_set(nav_world *world, const char *name, const char *value);
 // NULL-terminated names of a method kind: "heuristic", "grid", "avoidance".
 const char *const *nav_method_names(const char *kind);
 int nav_world_state(const nav_world *world, const core_columns **out, int capacity);
+// The worst length of a live path over that of the shortest way between its ends, for at most
+// `most` paths spread evenly (0: all); 0 where there is none. Those with links do not count.
+double nav_world_path_ratio_max(nav_world *world, uint32_t most);
 size_t nav_world_bytes(const nav_world *world);
 void nav_world_counts(const nav_world *world, core_metrics *metrics); // nav_nodes, agents, paths
 
@@ -103,7 +107,8 @@ typedef enum nav_status {
     NAV_FOUND,
     NAV_PARTIAL, // no way to the goal: the path leads to the reachable node nearest to it
     NAV_NO_PATH,
-    NAV_LIMIT // max_expansions were not enough; a partial path if asked for
+    NAV_LIMIT,  // max_expansions were not enough; a partial path if asked for
+    NAV_PENDING // a path whose search goes on (setting "slice"); it has the points it had
 } nav_status;
 const char *nav_status_name(nav_status status);
 
@@ -298,6 +303,20 @@ void nav_mesh_last_way(const nav_world *world, core_vec3 *point, uint32_t *link,
 bool nav_mesh_search(nav_world *world, nav_mesh mesh, core_vec3 start, core_vec3 goal,
                      nav_result *result, core_vec3 *out, uint32_t capacity);
 
+// ---- many ways to one goal ----
+// A flow knows the shortest way to its goal from everywhere (without links and area costs): one
+// flood of the surface, then a way costs as little as its bends. It keeps up with the surface.
+typedef core_handle nav_flow;
+nav_flow nav_flow_create(nav_world *world, nav_mesh mesh, core_vec3 goal); // null + core_fail
+bool nav_flow_destroy(nav_world *world, nav_flow flow);
+bool nav_flow_alive(const nav_world *world, nav_flow flow);
+// As nav_mesh_search from a point to the flow's goal.
+bool nav_flow_way(nav_world *world, nav_flow flow, core_vec3 from, nav_result *result,
+                  core_vec3 *point, uint32_t capacity);
+// Status and length of the ways from count points to one goal.
+bool nav_mesh_search_many(nav_world *world, nav_mesh mesh, const core_vec3 *start, uint32_t count,
+                          core_vec3 goal, nav_result *result);
+
 // ---- paths ----
 // A way between two points by way of the nodes nearest to them. nav_world_step plans it anew when
 // its graph has changed; nav_path_update does so at once.
@@ -351,6 +370,8 @@ bool nav_agent_alive(const nav_world *world, nav_agent agent);
 bool nav_agent_go(nav_world *world, nav_agent agent, nav_graph graph, core_vec3 goal);
 // Walks across a surface to the point of it nearest to `goal`.
 bool nav_agent_go_on_mesh(nav_world *world, nav_agent agent, nav_mesh mesh, core_vec3 goal);
+// Walks with a flow to its goal.
+bool nav_agent_go_with_flow(nav_world *world, nav_agent agent, nav_flow flow);
 bool nav_agent_stop(nav_world *world, nav_agent agent);
 nav_agent_state nav_agent_status(const nav_world *world, nav_agent agent);
 bool nav_agent_position(const nav_world *world, nav_agent agent, core_vec3 *out);

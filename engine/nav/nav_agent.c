@@ -136,8 +136,18 @@ bool nav_agent_go(nav_world *w, nav_agent agent, nav_graph graph, core_vec3 goal
     if (row == CORE_NO_ROW || nav_graph_row(w, graph) == CORE_NO_ROW || !check_goal(goal)) {
         return false;
     }
-    nav_path path =
-        nav_path_renew(w, w->agent.path[row], graph, CORE_NULL_HANDLE, place(&w->agent, row), goal);
+    nav_path_head head = {.graph = graph, .start = place(&w->agent, row), .goal = goal};
+    return set_out(w, row, nav_path_renew(w, w->agent.path[row], head), goal);
+}
+
+static bool cross_mesh(nav_world *w, uint32_t row, nav_path_head head) {
+    head.start = place(&w->agent, row);
+    nav_path path = nav_path_renew(w, w->agent.path[row], head);
+    uint32_t count = nav_path_count(w, path);
+    core_vec3 goal = head.goal;
+    if (count && nav_path_status(w, path) == NAV_FOUND) {
+        nav_path_point(w, path, count - 1, &goal); // on the surface
+    }
     return set_out(w, row, path, goal);
 }
 
@@ -149,13 +159,19 @@ bool nav_agent_go_on_mesh(nav_world *w, nav_agent agent, nav_mesh mesh, core_vec
     if (!nav_mesh_alive(w, mesh)) {
         return core_fail("nav agent: the surface to cross does not exist");
     }
-    nav_path path =
-        nav_path_renew(w, w->agent.path[row], CORE_NULL_HANDLE, mesh, place(&w->agent, row), goal);
-    uint32_t count = nav_path_count(w, path);
-    if (count) {
-        nav_path_point(w, path, count - 1, &goal); // on the surface
+    return cross_mesh(w, row, (nav_path_head){.mesh = mesh, .goal = goal});
+}
+
+bool nav_agent_go_with_flow(nav_world *w, nav_agent agent, nav_flow flow) {
+    uint32_t row = agent_row(w, agent), at = core_columns_row(&w->flow.set, flow);
+    if (row == CORE_NO_ROW) {
+        return false;
     }
-    return set_out(w, row, path, goal);
+    if (at == CORE_NO_ROW || !nav_mesh_alive(w, w->flow.head[at].mesh)) {
+        return core_fail("nav agent: the flow to walk with, or its surface, does not exist");
+    }
+    nav_flow_head f = w->flow.head[at];
+    return cross_mesh(w, row, (nav_path_head){.mesh = f.mesh, .goal = f.goal, .flow = flow});
 }
 
 bool nav_agent_stop(nav_world *w, nav_agent agent) {
@@ -438,10 +454,14 @@ static void steer(nav_world *w, uint32_t row, float dt) {
     }
     core_vec3 target;
     if (!keep_path(w, row, path)) {
-        a->state[row] = NAV_AGENT_STUCK;
+        bool waits = w->path.head[path].status == NAV_PENDING;
+        a->state[row] = waits ? NAV_AGENT_WALKING : NAV_AGENT_STUCK;
         return;
     }
     if (!advance(w, row, path, dt, &target)) {
+        if (w->path.head[path].status == NAV_PENDING) {
+            return;
+        }
         bool there = w->path.head[path].status == NAV_FOUND;
         a->state[row] = there ? NAV_AGENT_ARRIVED : NAV_AGENT_STUCK;
         return;

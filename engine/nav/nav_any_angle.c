@@ -5,6 +5,7 @@
 //
 // Plane coordinates in cells, doubles: borders lie on whole numbers, so side tests are exact but
 // for the ends of clipped intervals.
+#include <math.h>
 #include <string.h>
 
 #include "nav/nav_internal.h"
@@ -29,6 +30,7 @@ typedef struct search {
     nav_view_scratch *s;
     point goal;
     uint32_t goal_polygon;
+    bool flood; // no goal: everything that can be reached, nearest first
 } search;
 
 static point corner(const nav_mesh_data *m, uint32_t edge) {
@@ -80,9 +82,18 @@ static uint32_t pop(nav_view_scratch *s) {
 
 // ---- estimates ----
 
+static double distance_to_piece(point p, point a, point b) {
+    double dx = b.x - a.x, dz = b.z - a.z, square = dx * dx + dz * dz;
+    double t = ((p.x - a.x) * dx + (p.z - a.z) * dz) / square;
+    return distance(p, between(a, b, CORE_CLAMP(t, 0.0, 1.0)));
+}
+
 // Shortest way from the view's root through its interval to the goal, were all beyond it free. A
 // goal on the root's side of the edge is mirrored to the other.
 static double estimate(const search *q, const nav_view *v) {
+    if (q->flood) {
+        return distance_to_piece(v->root, v->right, v->left);
+    }
     point goal = q->goal, a = v->right, b = v->left;
     double root_side = cross(a, b, v->root), goal_side = cross(a, b, goal);
     if (root_side * goal_side > 0.0) {
@@ -288,39 +299,100 @@ static void begin(nav_view_scratch *s, uint32_t turns) {
     s->count = s->open = 0;
 }
 
-uint32_t nav_mesh_any_angle(const nav_mesh_data *m, nav_view_scratch *scratch, nav_point start,
-                            uint32_t start_polygon, nav_point goal, uint32_t goal_polygon,
-                            uint32_t *expanded) {
-    search s = {m, scratch, goal, goal_polygon};
-    begin(scratch, m->turn_blocks.end);
-    nav_view all = {.root = start,
-                    .root_turn = NAV_NONE,
-                    .polygon = start_polygon,
-                    .entered = NAV_NONE,
-                    .parent = NAV_NONE};
-    *expanded = 0;
-    if (start_polygon == goal_polygon) {
-        all.f = distance(start, goal);
-        push(scratch, &all);
-        return 0;
-    }
-    add_all(&s, &all, start, NAV_NONE, 0.0, NAV_NONE);
-    while (scratch->open) {
+// Goes on until the way is known or so many views have been expanded.
+nav_progress nav_mesh_any_angle_run(nav_any_angle *q, uint32_t most) {
+    search s = {q->mesh, q->scratch, q->goal, q->goal_polygon, false};
+    nav_view_scratch *scratch = q->scratch;
+    for (uint32_t n = 0; scratch->open;) {
+        if (n == most) {
+            return NAV_GOES_ON;
+        }
         uint32_t number = pop(scratch);
         nav_view *v = &scratch->view[number];
         if (!root_is_best(scratch, v->root_turn, v->g)) {
             continue;
         }
-        if (v->polygon == goal_polygon) {
-            uint32_t last = reaches(&s, number);
-            if (last != NAV_NONE) {
-                return last;
+        if (v->polygon == q->goal_polygon) {
+            q->last = reaches(&s, number);
+            if (q->last != NAV_NONE) {
+                return NAV_IS_FOUND;
             }
         }
         expand(&s, number);
-        ++*expanded;
+        q->expanded++;
+        n++;
     }
-    return NAV_NONE;
+    return NAV_IS_NOT_THERE;
+}
+
+void nav_mesh_any_angle_begin(nav_any_angle *q, nav_point start, uint32_t start_polygon) {
+    search s = {q->mesh, q->scratch, q->goal, q->goal_polygon, false};
+    begin(q->scratch, q->mesh->turn_blocks.end);
+    nav_view all = {.root = start,
+                    .root_turn = NAV_NONE,
+                    .polygon = start_polygon,
+                    .entered = NAV_NONE,
+                    .parent = NAV_NONE};
+    q->expanded = 0;
+    q->last = NAV_NONE;
+    if (start_polygon == q->goal_polygon) {
+        all.f = distance(start, q->goal); // the first to be taken, and it reaches
+        push(q->scratch, &all);
+        return;
+    }
+    add_all(&s, &all, start, NAV_NONE, 0.0, NAV_NONE);
+}
+
+uint32_t nav_mesh_any_angle(const nav_mesh_data *m, nav_view_scratch *scratch, nav_point start,
+                            uint32_t start_polygon, nav_point goal, uint32_t goal_polygon,
+                            uint32_t *expanded) {
+    nav_any_angle q = {m, scratch, goal, goal_polygon, 0, NAV_NONE};
+    nav_mesh_any_angle_begin(&q, start, start_polygon);
+    nav_mesh_any_angle_run(&q, UINT32_MAX);
+    *expanded = q.expanded;
+    return q.last;
+}
+
+void nav_mesh_flood(const nav_mesh_data *m, nav_view_scratch *scratch, nav_point start,
+                    uint32_t polygon) {
+    search s = {m, scratch, start, NAV_NONE, true};
+    begin(scratch, m->turn_blocks.end);
+    nav_view all = {.root = start,
+                    .root_turn = NAV_NONE,
+                    .polygon = polygon,
+                    .entered = NAV_NONE,
+                    .parent = NAV_NONE};
+    add_all(&s, &all, start, NAV_NONE, 0.0, NAV_NONE);
+    while (scratch->open) {
+        uint32_t number = pop(scratch);
+        const nav_view *v = &scratch->view[number];
+        if (root_is_best(scratch, v->root_turn, v->g)) {
+            expand(&s, number);
+        }
+    }
+}
+
+double nav_view_reach(const nav_view *v, nav_point p, nav_point *bend, uint32_t *turn) {
+    *turn = NAV_NONE;
+    double side = cross(v->right, v->left, v->root);
+    double to_left = distance(v->root, v->left), to_right = distance(v->root, v->right);
+    bool flat = side > -EPS && side < EPS, inside;
+    if (flat) { // the root on the line of the interval
+        double size = distance(v->left, v->right) + EPS;
+        inside = to_left <= size && to_right <= size;
+    } else {
+        inside = cross(v->root, v->right, p) >= -EPS && cross(v->root, v->left, p) <= EPS;
+    }
+    if (inside) {
+        return v->g + distance(v->root, p);
+    }
+    bool by_left = flat ? to_left < to_right : cross(v->root, v->left, p) > 0.0;
+    *turn = by_left ? v->left_turn : v->right_turn;
+    *bend = by_left ? v->left : v->right;
+    if (*turn == NAV_NONE) {
+        return (double)INFINITY;
+    }
+    return v->g + (by_left ? to_left : to_right) + distance(*bend, p);
 }
 
 void nav_view_scratch_release(nav_view_scratch *s) {

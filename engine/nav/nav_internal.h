@@ -62,6 +62,7 @@ CORE_COLUMNS_DECLARE(nav_graphs, NAV_GRAPH_COLUMNS)
 
 typedef struct nav_path_head {
     core_handle graph, mesh; // one of them
+    core_handle flow;        // on a mesh: that leads to the goal, or null
     uint64_t version;        // of the graph when it was planned
     double cost;
     core_vec3 start, goal;
@@ -220,6 +221,7 @@ struct nav_world {
     nav_agents agent;
     nav_grids grid;
     nav_meshes mesh;
+    nav_flows flow;
     nav_view_scratch views;
     nav_buffer encounters; // of agents with gates
     nav_way way;
@@ -230,6 +232,9 @@ struct nav_world {
     nav_grid_scratch *grid_scratch; // made with the first grid
     nav_heuristic heuristic;        // of paths
     uint32_t plans_left;            // in this step
+    uint32_t slice_budget;          // views expanded in a step; 0: searches end at once
+    uint32_t next_slice;            // path
+    nav_slice slice;
     uint32_t next_path, next_agent; // whose turn it is
     float weight;
     bool no_avoidance;
@@ -249,11 +254,16 @@ double nav_octile(double dx, double dy, double dz);
 void nav_grid_scratch_release(nav_world *world);
 // nav_path.c
 // Plans a path on a live graph or mesh (the other null), in the place of `old` when that lives.
-nav_path nav_path_renew(nav_world *world, nav_path old, nav_graph graph, nav_mesh mesh,
-                        core_vec3 start, core_vec3 goal);
+nav_path nav_path_renew(nav_world *world, nav_path old, nav_path_head head);
 bool nav_path_outdated(const nav_world *world, uint32_t row); // its ground has changed
 void nav_path_check(nav_world *world, uint32_t row);          // invalid when its ground is gone
 void nav_paths_refresh(nav_world *world); // plans those whose ground has changed, but agents'
+void nav_path_plan_now(nav_world *world, uint32_t row);
+// A search in pieces has ended (NULL: there is no way).
+void nav_path_found(nav_world *world, uint32_t row, const nav_any_angle *search,
+                    const nav_ends *ends);
+// nav_slice.c
+void nav_slices_step(nav_world *world);
 // nav_gate.c
 void nav_gates_step(nav_world *world, float radius, float dt); // may change wanted velocities
 // nav_avoid.c

@@ -14,7 +14,7 @@ nav_mesh_query nav_mesh_query_default(void) {
 
 static bool same(nav_point a, nav_point b) { return a.x == b.x && a.z == b.z; }
 
-static void add_point(nav_way *way, core_vec3 point, uint32_t link) {
+void nav_way_add(nav_way *way, core_vec3 point, uint32_t link) {
     if (way->count == way->room) {
         uint32_t wanted = CORE_MAX(way->room * 2, 64u);
         way->point =
@@ -27,25 +27,23 @@ static void add_point(nav_way *way, core_vec3 point, uint32_t link) {
     way->link[way->count++] = link;
 }
 
-// A bend, moved away from the closed cell that it goes round by so many cells along both axes.
-static nav_point clear_of_corner(const nav_mesh_data *m, const nav_view *v, double cells) {
+nav_point nav_mesh_clear_of(const nav_mesh_data *m, nav_point corner, uint32_t turn, double cells) {
     static const double dir_x[4] = {1, 0, -1, 0}, dir_z[4] = {0, 1, 0, -1};
-    int a = m->turn_closed[v->root_turn], b = (a + 1) % 4;
-    return (nav_point){v->root.x - cells * (dir_x[a] + dir_x[b]),
-                       v->root.z - cells * (dir_z[a] + dir_z[b])};
+    int a = m->turn_closed[turn], b = (a + 1) % 4;
+    return (nav_point){corner.x - cells * (dir_x[a] + dir_x[b]),
+                       corner.z - cells * (dir_z[a] + dir_z[b])};
 }
 
 // The bends of a chain of views, which is read from its end.
-static void add_bends(nav_world *w, const nav_mesh_data *m, uint32_t last, nav_point start,
-                      double clearance) {
-    const nav_view *view = w->views.view;
+static void add_bends(nav_world *w, const nav_mesh_data *m, const nav_view *view, uint32_t last,
+                      nav_point start, double clearance) {
     uint32_t first = w->way.count;
     nav_point bend = start;
     for (uint32_t v = last; v != NAV_NONE; v = view[v].parent) {
         if (!same(view[v].root, bend) && view[v].root_turn != NAV_NONE) {
-            nav_point at = clear_of_corner(m, &view[v], clearance);
-            add_point(&w->way, nav_mesh_world_point(m, at, m->turn_y[view[v].root_turn]),
-                      NAV_NO_LINK);
+            nav_point at = nav_mesh_clear_of(m, view[v].root, view[v].root_turn, clearance);
+            nav_way_add(&w->way, nav_mesh_world_point(m, at, m->turn_y[view[v].root_turn]),
+                        NAV_NO_LINK);
         }
         bend = view[v].root;
     }
@@ -58,7 +56,7 @@ static void add_bends(nav_world *w, const nav_mesh_data *m, uint32_t last, nav_p
 
 static void add_place(nav_world *w, const nav_mesh_data *m, nav_point at, uint32_t span,
                       uint32_t link) {
-    add_point(&w->way, nav_mesh_world_point(m, at, m->span.y[span]), link);
+    nav_way_add(&w->way, nav_mesh_world_point(m, at, m->span.y[span]), link);
 }
 
 // The shortest way over the ground, without its first point. Gives its length in cells, < 0: none.
@@ -72,11 +70,22 @@ static double add_leg(nav_world *w, const nav_mesh_data *m, nav_point from, uint
     if (last == NAV_NONE) {
         return -1.0;
     }
-    add_bends(w, m, last, from, clearance);
+    add_bends(w, m, w->views.view, last, from, clearance);
     add_place(w, m, to, to_span, link);
     const nav_view *v = &w->views.view[last];
     double dx = to.x - v->root.x, dz = to.z - v->root.z;
     return v->g + core_sqrt(dx * dx + dz * dz);
+}
+
+double nav_mesh_write_found(nav_world *w, const nav_any_angle *q, const nav_ends *ends,
+                            double clearance) {
+    const nav_view *v = &q->scratch->view[q->last];
+    w->way.count = 0;
+    add_place(w, q->mesh, ends->start.at, ends->start.span, NAV_NO_LINK);
+    add_bends(w, q->mesh, q->scratch->view, q->last, ends->start.at, clearance);
+    add_place(w, q->mesh, ends->goal.at, ends->goal.span, NAV_NO_LINK);
+    double dx = ends->goal.at.x - v->root.x, dz = ends->goal.at.z - v->root.z;
+    return (v->g + core_sqrt(dx * dx + dz * dz)) * (double)q->mesh->cell_size;
 }
 
 static nav_status over_ground(nav_world *w, const nav_mesh_data *m, const nav_ends *ends,
@@ -138,13 +147,13 @@ static void by_costs(nav_world *w, const nav_mesh_data *m) {
     }
 }
 
-static bool has_open_links(const nav_mesh_data *m) {
+bool nav_mesh_is_plain(const nav_mesh_data *m) {
     for (uint32_t i = 0; i < m->links; i++) {
         if (m->link[i].exists && !m->link[i].desc.closed) {
-            return true;
+            return false;
         }
     }
-    return false;
+    return true;
 }
 
 static bool read_costs(const nav_mesh_query *q, float cost[NAV_AREAS], bool *even) {
@@ -165,7 +174,7 @@ static bool read_costs(const nav_mesh_query *q, float cost[NAV_AREAS], bool *eve
 static nav_status plan_between(nav_world *w, uint32_t row, nav_ends *ends, const float *cost,
                                bool even, bool partial, double clearance, nav_result *result) {
     nav_mesh_data *m = w->mesh.data[row];
-    if (!even || has_open_links(m)) {
+    if (!even || !nav_mesh_is_plain(m)) {
         nav_status status = nav_mesh_coarse(w, m, ends, cost, partial, result);
         if (status != NAV_FOUND && status != NAV_PARTIAL) {
             return status;
@@ -189,6 +198,13 @@ static nav_status plan_between(nav_world *w, uint32_t row, nav_ends *ends, const
     return status == NAV_FOUND && !joined ? NAV_PARTIAL : status;
 }
 
+bool nav_mesh_ends(const nav_mesh_data *m, const nav_mesh_query *q, nav_ends *ends) {
+    *ends = (nav_ends){.start = nav_mesh_locate(m, q->start, REACH),
+                       .goal = nav_mesh_locate(m, q->goal, q->partial ? ANYWHERE : REACH),
+                       .wanted = q->goal};
+    return ends->start.span != NAV_NONE && ends->goal.span != NAV_NONE;
+}
+
 bool nav_mesh_plan(nav_world *w, const nav_mesh_query *q, double clearance, nav_result *result) {
     *result = (nav_result){.status = NAV_INVALID, .reached = NAV_NO_NODE};
     w->way.count = 0;
@@ -202,11 +218,9 @@ bool nav_mesh_plan(nav_world *w, const nav_mesh_query *q, double clearance, nav_
     if (!m || !read_costs(q, cost, &even)) {
         return false;
     }
-    nav_ends ends = {.start = nav_mesh_locate(m, q->start, REACH),
-                     .goal = nav_mesh_locate(m, q->goal, q->partial ? ANYWHERE : REACH),
-                     .wanted = q->goal};
+    nav_ends ends;
     result->status = NAV_NO_PATH;
-    if (ends.start.span == NAV_NONE || ends.goal.span == NAV_NONE) {
+    if (!nav_mesh_ends(m, q, &ends)) {
         return true;
     }
     bool off = ends.goal.square > (REACH + 2e-4) * (REACH + 2e-4);

@@ -34,9 +34,7 @@ static nav_path create(nav_world *w, nav_path_head head) {
     return path;
 }
 
-nav_path nav_path_renew(nav_world *w, nav_path old, nav_graph graph, nav_mesh mesh, core_vec3 start,
-                        core_vec3 goal) {
-    nav_path_head head = {.graph = graph, .mesh = mesh, .start = start, .goal = goal};
+nav_path nav_path_renew(nav_world *w, nav_path old, nav_path_head head) {
     uint32_t row = core_columns_row(&w->path.set, old);
     if (row == CORE_NO_ROW) {
         return create(w, head);
@@ -124,23 +122,39 @@ static void plan_on_graph(nav_world *w, const nav_path_head *p, nav_path_points 
 // Bends half a cell off the corners: who walks exactly along a border is held up by every push.
 #define CORNER_CLEARANCE 0.5
 
+static void take_way(const nav_world *w, nav_path_points *points) {
+    fit(points, w->way.count);
+    if (w->way.count) {
+        memcpy(points->point, w->way.point, w->way.count * sizeof *points->point);
+        memcpy(points->node, w->way.link, w->way.count * sizeof *points->node);
+    }
+}
+
 static void plan_on_mesh(nav_world *w, const nav_path_head *p, nav_path_points *points,
                          nav_result *result) {
     nav_mesh_query query = nav_mesh_query_default();
     query.mesh = p->mesh;
     query.start = p->start, query.goal = p->goal;
     query.partial = true;
-    nav_mesh_plan(w, &query, CORNER_CLEARANCE, result);
-    fit(points, result->count);
-    if (result->count) {
-        memcpy(points->point, w->way.point, result->count * sizeof *points->point);
-        memcpy(points->node, w->way.link, result->count * sizeof *points->node);
+    if (nav_flow_alive(w, p->flow)) {
+        nav_flow_plan(w, p->flow, p->start, CORNER_CLEARANCE, result);
+    } else {
+        nav_mesh_plan(w, &query, CORNER_CLEARANCE, result);
     }
+    take_way(w, points);
 }
 
 static bool on_mesh(const nav_path_head *p) { return !core_handle_is_null(p->mesh); }
 
-static void plan(nav_world *w, uint32_t row) {
+static void store(nav_path_head *p, const nav_path_points *points, const nav_result *result) {
+    p->status = (uint32_t)result->status;
+    p->count = result->count;
+    p->cost = result->cost;
+    p->plans++;
+    p->points_hash = (uint32_t)core_hash(points->point, result->count * sizeof *points->point, 0);
+}
+
+void nav_path_plan_now(nav_world *w, uint32_t row) {
     nav_path_head *p = &w->path.head[row];
     nav_path_points *points = &w->path.points[row];
     nav_result result = {.status = NAV_NO_PATH};
@@ -151,11 +165,32 @@ static void plan(nav_world *w, uint32_t row) {
         p->version = nav_graph_version(w, p->graph);
         plan_on_graph(w, p, points, &result);
     }
-    p->status = (uint32_t)result.status;
-    p->count = result.count;
-    p->cost = result.cost;
-    p->plans++;
-    p->points_hash = (uint32_t)core_hash(points->point, result.count * sizeof *points->point, 0);
+    store(p, points, &result);
+}
+
+void nav_path_found(nav_world *w, uint32_t row, const nav_any_angle *search, const nav_ends *ends) {
+    nav_path_head *p = &w->path.head[row];
+    nav_path_points *points = &w->path.points[row];
+    nav_result result = {.status = NAV_NO_PATH};
+    p->version = w->slice.version;
+    if (search) {
+        result.cost = nav_mesh_write_found(w, search, ends, CORNER_CLEARANCE);
+        result.status = NAV_FOUND;
+        result.count = w->way.count;
+        take_way(w, points);
+    }
+    store(p, points, &result);
+}
+
+// Where searches are sliced it waits for its turn; a way that it has stays until then.
+static void plan(nav_world *w, uint32_t row) {
+    nav_path_head *p = &w->path.head[row];
+    if (w->slice_budget == 0 || !on_mesh(p) || nav_flow_alive(w, p->flow)) {
+        nav_path_plan_now(w, row);
+        return;
+    }
+    p->version = w->mesh.head[core_columns_row(&w->mesh.set, p->mesh)].version;
+    p->status = NAV_PENDING;
 }
 
 static bool ground_alive(const nav_world *w, const nav_path_head *p) {
@@ -244,4 +279,53 @@ uint32_t nav_path_link(const nav_world *w, nav_path path, uint32_t i) {
 uint32_t nav_path_plans(const nav_world *w, nav_path path) {
     uint32_t row = path_row(w, path);
     return row == CORE_NO_ROW ? 0 : w->path.head[row].plans;
+}
+
+// ---- accuracy ----
+
+static double length_of(const core_vec3 *point, uint32_t count) { // on the ground plane
+    double sum = 0.0;
+    for (uint32_t i = 1; i < count; i++) {
+        double dx = (double)point[i].x - point[i - 1].x, dz = (double)point[i].z - point[i - 1].z;
+        sum += core_sqrt(dx * dx + dz * dz);
+    }
+    return sum;
+}
+
+// How much longer a path is than the shortest; 0 where that does not apply.
+static double ratio_of(nav_world *w, uint32_t row) {
+    const nav_path_head *p = &w->path.head[row];
+    const nav_path_points *points = &w->path.points[row];
+    nav_result best = {0};
+    if (p->status != NAV_FOUND || p->count < 2 || nav_path_outdated(w, row)) {
+        return 0.0;
+    }
+    if (on_mesh(p)) {
+        uint32_t mesh = core_columns_row(&w->mesh.set, p->mesh);
+        if (mesh == CORE_NO_ROW || !nav_mesh_is_plain(w->mesh.data[mesh])) {
+            return 0.0;
+        }
+        nav_mesh_search(w, p->mesh, points->point[0], points->point[p->count - 1], &best, NULL, 0);
+        return best.cost > 0.0 ? length_of(points->point, p->count) / best.cost : 0.0;
+    }
+    if (!nav_graph_alive(w, p->graph)) {
+        return 0.0;
+    }
+    nav_query query = nav_query_default();
+    query.graph = p->graph;
+    query.start = points->node[0], query.goal = points->node[p->count - 1];
+    query.heuristic = NAV_ZERO;
+    nav_graph_search(w, &query, &best, NULL, 0);
+    return best.cost > 0.0 ? p->cost / best.cost : 0.0;
+}
+
+double nav_world_path_ratio_max(nav_world *w, uint32_t most) {
+    uint32_t count = core_columns_count(&w->path.set);
+    uint32_t step = most && count > most ? (count + most - 1) / most : 1;
+    double worst = 0.0;
+    for (uint32_t row = 0; row < count; row += step) {
+        double ratio = ratio_of(w, row);
+        worst = CORE_MAX(worst, ratio);
+    }
+    return worst;
 }

@@ -22,7 +22,8 @@ void nav_scratch_release(nav_scratch *s) {
 }
 
 const char *nav_status_name(nav_status status) {
-    static const char *const names[] = {"invalid", "found", "partial", "no path", "limit"};
+    static const char *const names[] = {"invalid", "found", "partial",
+                                        "no path", "limit", "pending"};
     return (unsigned)status < CORE_COUNT_OF(names) ? names[status] : "unknown";
 }
 

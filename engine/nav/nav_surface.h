@@ -326,12 +326,48 @@ typedef struct nav_view_scratch {
 uint32_t nav_mesh_any_angle(const nav_mesh_data *mesh, nav_view_scratch *scratch, nav_point start,
                             uint32_t start_polygon, nav_point goal, uint32_t goal_polygon,
                             uint32_t *expanded);
+typedef struct nav_ends {
+    nav_place start, goal;
+    core_vec3 wanted; // the goal asked for
+} nav_ends;
+// The same in pieces.
+typedef struct nav_any_angle {
+    const nav_mesh_data *mesh;
+    nav_view_scratch *scratch;
+    nav_point goal;
+    uint32_t goal_polygon, expanded;
+    uint32_t last; // view, when it is found
+} nav_any_angle;
+typedef enum nav_progress { NAV_GOES_ON, NAV_IS_FOUND, NAV_IS_NOT_THERE } nav_progress;
+void nav_mesh_any_angle_begin(nav_any_angle *search, nav_point start, uint32_t start_polygon);
+nav_progress nav_mesh_any_angle_run(nav_any_angle *search, uint32_t most);
+// A search that goes on from step to step (nav_slice.c).
+typedef struct nav_slice {
+    core_handle path; // null: none
+    uint64_t version; // of the surface
+    uint32_t mesh;    // its row
+    nav_ends ends;
+    nav_any_angle search;
+    nav_view_scratch views;
+} nav_slice;
+// All views from a point, nearest first: scratch->view[scratch->count].
+void nav_mesh_flood(const nav_mesh_data *mesh, nav_view_scratch *scratch, nav_point start,
+                    uint32_t polygon);
+// Length of the way from a view's first root to a point of its polygon, INFINITY: not by this view.
+// *turn: the turning point at which it bends into the polygon, NAV_NONE: straight from the root.
+double nav_view_reach(const nav_view *view, nav_point point, nav_point *bend, uint32_t *turn);
 void nav_view_scratch_release(nav_view_scratch *scratch);
 
 // nav_mesh_find_way with bends kept `clearance` cells (0..1) clear of the corners they go round.
 // The way stays in world->way until the next search.
 bool nav_mesh_plan(nav_world *world, const nav_mesh_query *query, double clearance,
                    nav_result *result);
+// Ends of a query on the surface; status NAV_NO_PATH when one of them is off it.
+bool nav_mesh_ends(const nav_mesh_data *mesh, const nav_mesh_query *query, nav_ends *ends);
+// Fills world->way from a search that has found its goal; its length in m.
+double nav_mesh_write_found(nav_world *world, const nav_any_angle *search, const nav_ends *ends,
+                            double clearance);
+bool nav_mesh_is_plain(const nav_mesh_data *mesh); // no link is open
 typedef struct nav_way {
     core_vec3 *point;
     uint32_t *link; // to the next point
@@ -345,6 +381,31 @@ nav_place nav_mesh_nearest_joined(const nav_mesh_data *mesh, nav_place start, co
 // Of a polygon; its height is that of the span there.
 nav_place nav_mesh_nearest_in(const nav_mesh_data *mesh, uint32_t polygon, core_vec3 goal);
 
+// Ways from anywhere to one goal (nav_flow.c).
+typedef struct nav_flow_data {
+    uint64_t version; // of the surface, + 1
+    nav_place goal;
+    nav_buffer views, first, next; // nav_view; by polygon: number of its first view, of the next
+    uint32_t count;
+} nav_flow_data;
+typedef struct nav_flow_head {
+    core_handle mesh;
+    core_vec3 goal;
+    uint32_t unused;
+} nav_flow_head;
+#define NAV_FLOW_COLUMNS(X)                                                                        \
+    X(nav_flow_head, head, CORE_COLUMN_STATE)                                                      \
+    X(nav_flow_data *, data, 0)
+CORE_COLUMNS_DECLARE(nav_flows, NAV_FLOW_COLUMNS)
+// Fills world->way from `start` to the flow's goal, bends kept clear as in nav_mesh_plan.
+bool nav_flow_plan(nav_world *world, nav_flow flow, core_vec3 start, double clearance,
+                   nav_result *result);
+void nav_flow_release(nav_flow_data *flow);
+void nav_way_add(nav_way *way, core_vec3 point, uint32_t link);
+// A turning point, moved away from the closed cell that a way goes round there by so many cells.
+nav_point nav_mesh_clear_of(const nav_mesh_data *mesh, nav_point corner, uint32_t turn,
+                            double cells);
+
 // A point of a coarse way.
 typedef struct nav_waypoint {
     nav_point at;
@@ -353,10 +414,6 @@ typedef struct nav_waypoint {
     uint32_t polygon; // in which it goes on
     uint32_t link;    // that leads to the next, NAV_NO_LINK
 } nav_waypoint;
-typedef struct nav_ends {
-    nav_place start, goal;
-    core_vec3 wanted; // the goal asked for
-} nav_ends;
 // Fills world->coarse.way. With `partial`, ends->goal becomes the nearest reachable place.
 nav_status nav_mesh_coarse(nav_world *world, const nav_mesh_data *mesh, nav_ends *ends,
                            const float *cost, bool partial, nav_result *result);

@@ -26,6 +26,7 @@ nav_world *nav_world_create(const nav_world_desc *desc) {
     if (!nav_graphs_init(&w->graph, "nav.graphs", MOST_GRAPHS) ||
         !nav_grids_init(&w->grid, "nav.grids", MOST_GRAPHS) ||
         !nav_meshes_init(&w->mesh, "nav.meshes", MOST_GRAPHS) ||
+        !nav_flows_init(&w->flow, "nav.flows", MOST_GRAPHS) ||
         !nav_paths_init(&w->path, "nav.paths", CORE_MAX(agents, MOST_PATHS)) ||
         !nav_agents_init(&w->agent, "nav.agents", agents)) {
         nav_world_destroy(w);
@@ -50,12 +51,17 @@ void nav_world_destroy(nav_world *w) {
     for (uint32_t n = core_columns_count(&w->mesh.set); n > 0; n--) {
         nav_mesh_destroy(w, core_columns_handle(&w->mesh.set, n - 1));
     }
+    for (uint32_t n = core_columns_count(&w->flow.set); n > 0; n--) {
+        nav_flow_release(w->flow.data[n - 1]);
+    }
+    core_columns_release(&w->flow.set);
     nav_builder_release(w);
     nav_coarse_release(&w->coarse);
     core_free(w->encounters.data);
     core_free(w->way.point);
     core_free(w->way.link);
     nav_view_scratch_release(&w->views);
+    nav_view_scratch_release(&w->slice.views);
     core_columns_release(&w->mesh.set);
     nav_grid_scratch_release(w);
     core_columns_release(&w->grid.set);
@@ -78,6 +84,9 @@ bool nav_world_step(nav_world *w, float dt) {
         }
     }
     w->plans_left = NAV_PLANS_A_STEP;
+    if (w->slice_budget) {
+        nav_slices_step(w);
+    }
     nav_agents_step(w, dt);
     nav_paths_refresh(w);
     core_stage_end(w->metrics, CORE_STAGE_NAV);
@@ -89,7 +98,7 @@ bool nav_world_step(nav_world *w, float dt) {
 static const char *const heuristics[] = {"euclid", "octile", "zero", NULL};
 static const char *const avoidances[] = {"orca", "none", NULL};
 static const char *const grid_methods[] = {"jump", "astar", NULL};
-static const char *const settings[] = {"heuristic", "weight", "avoidance"};
+static const char *const settings[] = {"heuristic", "weight", "avoidance", "slice"};
 
 const char *const *nav_method_names(const char *kind) {
     static const char *const none[] = {NULL};
@@ -118,7 +127,22 @@ static bool set_weight(nav_world *w, const char *value) {
     return true;
 }
 
+static bool set_slice(nav_world *w, const char *value) {
+    char *end;
+    long budget = strtol(value, &end, 10);
+    if (end == value || *end || budget < 0 || budget > 1000000000) {
+        return core_fail("nav.slice=%s: expected a whole number of expansions in a step, 0: "
+                         "searches end at once",
+                         value);
+    }
+    w->slice_budget = (uint32_t)budget;
+    return true;
+}
+
 bool nav_world_set(nav_world *w, const char *name, const char *value) {
+    if (strcmp(name, "slice") == 0) {
+        return set_slice(w, value);
+    }
     if (strcmp(name, "weight") == 0) {
         return set_weight(w, value);
     }
@@ -139,15 +163,16 @@ bool nav_world_set(nav_world *w, const char *name, const char *value) {
         return true;
     }
     const char *near = core_nearest(name, settings, CORE_COUNT_OF(settings));
-    return core_fail("nav.%s: no such setting; %s%s%sthere are heuristic, weight and avoidance",
-                     name, near ? "did you mean " : "", near ? near : "", near ? "? " : "");
+    return core_fail(
+        "nav.%s: no such setting; %s%s%sthere are heuristic, weight, avoidance and slice", name,
+        near ? "did you mean " : "", near ? near : "", near ? "? " : "");
 }
 
 // ---- contents ----
 
 int nav_world_state(const nav_world *w, const core_columns **out, int capacity) {
-    const core_columns *own[] = {&w->graph.set, &w->grid.set, &w->mesh.set, &w->path.set,
-                                 &w->agent.set};
+    const core_columns *own[] = {&w->graph.set, &w->grid.set, &w->mesh.set,
+                                 &w->flow.set,  &w->path.set, &w->agent.set};
     int n = 0;
     for (size_t i = 0; i < CORE_COUNT_OF(own); i++, n++) {
         if (out && n < capacity) {
@@ -183,6 +208,10 @@ size_t nav_world_bytes(const nav_world *w) {
     bytes += w->crowd.capacity * 24 * sizeof(float);
     for (uint32_t row = 0; row < core_columns_count(&w->mesh.set); row++) {
         bytes += nav_mesh_bytes(w->mesh.data[row]);
+    }
+    for (uint32_t row = 0; row < core_columns_count(&w->flow.set); row++) {
+        const nav_flow_data *f = w->flow.data[row];
+        bytes += sizeof *f + f->views.bytes + f->first.bytes + f->next.bytes;
     }
     bytes += w->coarse.capacity * sizeof(nav_coarse_record) + w->coarse.heap.bytes;
     bytes += w->views.capacity * (sizeof(nav_view) + sizeof(uint32_t)) +

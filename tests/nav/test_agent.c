@@ -309,7 +309,7 @@ static uint64_t crowd_hash(bool *allocated) {
     *allocated = core_alloc_count() != before;
     const core_columns *sets[16];
     int count = nav_world_state(world, sets, 16);
-    TEST_ASSERT_EQUAL_INT(7, count);
+    TEST_ASSERT_EQUAL_INT(8, count);
     uint64_t hash = 0;
     for (int i = 0; i < count; i++) {
         uint64_t column[CORE_COLUMNS_MAX];
