@@ -67,10 +67,12 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_ATTR_WEIGHT   6
 
 // Plain uniforms (glUniform locations).
-#define GFX_U_INSTANCE  0
-#define GFX_U_FACE      1
-#define GFX_U_SIZE      2
-#define GFX_U_ROUGHNESS 3
+#define GFX_U_INSTANCE   0
+#define GFX_U_FACE       1
+#define GFX_U_SIZE       2
+#define GFX_U_ROUGHNESS  3
+#define GFX_U_PARAMETERS 8 // of a script's shader: four vec4, up to 11
+#define GFX_PARAMETERS   16
 
 #define GFX_LIGHT_POINT       0
 #define GFX_LIGHT_SPOT        1

@@ -57,7 +57,24 @@ vec3 shadingNormal(gfx_material_block m) {
     return gl_FrontFacing ? n : -n;
 }
 
-Surface surfaceOf(gfx_material_block m, vec4 base) {
+#ifdef USE_HOOK
+// A material that a script wrote: its file defines void surface(inout Look look), which changes what
+// the factors and maps gave. Linear colours, metres, the world's axes.
+struct Look {
+    vec3 baseColor;
+    float alpha;
+    float metallic, roughness;
+    vec3 emission;
+    vec3 normal;   // unit, towards the viewer's side
+    vec3 position; // of the fragment; to read
+    vec2 uv;
+};
+layout(location = GFX_U_PARAMETERS) uniform vec4 u_parameters[GFX_PARAMETERS / 4];
+float parameter(int i) { return u_parameters[i / 4][i % 4]; }
+#include "HOOK"
+#endif
+
+Surface surfaceOf(gfx_material_block m, inout vec4 base, inout vec3 emission) {
     Surface s;
     float metallic = m.emissive_metallic.w, roughness = m.params.x;
 #ifdef USE_TEXTURES
@@ -68,6 +85,15 @@ Surface surfaceOf(gfx_material_block m, vec4 base) {
     s.position = v_world;
     s.view = viewDirection(v_world);
     s.normal = shadingNormal(m);
+#ifdef USE_HOOK
+    Look look = Look(base.rgb, base.a, metallic, roughness, emission, s.normal, v_world, v_uv);
+    surface(look);
+    base = vec4(look.baseColor, clamp(look.alpha, 0.0, 1.0));
+    emission = look.emission;
+    metallic = clamp(look.metallic, 0.0, 1.0);
+    roughness = clamp(look.roughness, 0.0, 1.0);
+    s.normal = normalize(look.normal);
+#endif
 #ifdef USE_SHADOWS
     s.flatNormal = normalize(cross(dFdx(v_world), dFdy(v_world)));
     s.flatNormal *= dot(s.flatNormal, s.view) < 0.0 ? -1.0 : 1.0;
@@ -90,15 +116,17 @@ void main() {
     }
     base.a = 1.0;
 #endif
-    Surface s = surfaceOf(m, base);
+    vec3 emission = m.emissive_metallic.rgb;
+#ifdef USE_TEXTURES
+    emission *= texture(u_emissive, v_uv).rgb;
+#endif
+    Surface s = surfaceOf(m, base, emission);
 #ifdef USE_DEBUG
     o_color = vec4(debugColor(s), 1.0);
     return;
 #endif
-    vec3 emission = m.emissive_metallic.rgb;
     float ambient = 1.0;
 #ifdef USE_TEXTURES
-    emission *= texture(u_emissive, v_uv).rgb;
     ambient = 1.0 + m.params.z * (texture(u_occlusion, v_uv).r - 1.0);
 #endif
 #ifdef USE_AO

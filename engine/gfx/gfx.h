@@ -146,6 +146,9 @@ bool gfx_mesh_destroy(gfx_world *world, gfx_mesh mesh);
 
 typedef struct gfx_material_desc {
     core_material_data data;
+    const char *fragment; // virtual path, 1..63 bytes, of a shader's part that changes what factors
+                          // and maps give (assets/shaders/scene.frag: Look); NULL: none. Copied
+    float parameters[16]; // parameter(0) .. parameter(15) there
     uint32_t cookie;
 } gfx_material_desc;
 gfx_material_desc gfx_material_desc_default(void); // white, rough 0.5, not metallic
@@ -153,6 +156,25 @@ gfx_material gfx_material_create(gfx_world *world, const gfx_material_desc *desc
 // Instances of a destroyed material are drawn in the default one.
 bool gfx_material_destroy(gfx_world *world, gfx_material material);
 bool gfx_material_alive(const gfx_world *world, gfx_material material);
+bool gfx_material_set_parameters(gfx_world *world, gfx_material material,
+                                 const float parameters[16]);
+
+// A pass over each view's picture, by a file that defines vec3 effect(vec2 uv)
+// (assets/shaders/effect.frag): on linear light before bloom and exposure, or on the encoded
+// picture before 2D. Passes run in order of creation. One that does not compile is logged with file
+// and line and left out.
+typedef core_handle gfx_effect;
+typedef struct gfx_effect_desc {
+    const char *fragment; // virtual path, 1..63 bytes, copied
+    bool encoded;         // false: linear light
+    float parameters[16];
+    uint32_t cookie;
+} gfx_effect_desc;
+gfx_effect_desc gfx_effect_desc_default(void);
+gfx_effect gfx_effect_create(gfx_world *world, const gfx_effect_desc *desc); // 32 at most
+bool gfx_effect_destroy(gfx_world *world, gfx_effect effect);
+bool gfx_effect_alive(const gfx_world *world, gfx_effect effect);
+bool gfx_effect_set_parameters(gfx_world *world, gfx_effect effect, const float parameters[16]);
 
 typedef struct gfx_instance_desc {
     gfx_mesh mesh;

@@ -95,7 +95,7 @@ void gfx_textures_release(gfx_textures *textures);
 enum { GFX_MATERIAL_TEXTURES = 5 }; // units GFX_TEX_BASE_COLOR to GFX_TEX_EMISSIVE
 typedef struct gfx_material_state { // what drawing with a material needs
     uint32_t features;
-    bool double_sided;
+    bool double_sided, hooked;
     GLuint texture[GFX_MATERIAL_TEXTURES];
 } gfx_material_state;
 typedef struct gfx_material_cache {
@@ -290,6 +290,7 @@ typedef struct gfx_targets {
     gfx_target ao, ao_smooth;           // visibility of ambient light
     gfx_target bloom[GFX_BLOOM_LEVELS]; // halves of halves of the bright part
     gfx_target encoded;                 // what FXAA reads
+    gfx_target spare_hdr, spare;        // what scripts' passes draw to
     GLuint exposure;                    // buffer of exposure.comp, 0: the exposure is fixed
     gfx_target image; // of a view that is a texture: the picture, rows as in files
     GLuint light;     // the same texels as sRGB

@@ -234,6 +234,26 @@ static void submit_batch(gfx_device *d, const gfx_batch *batch, bool instanced) 
     }
 }
 
+// What a batch's material has from a script, NULL: nothing.
+static const gfx_hook *hook_of(const gfx_device *d, const gfx_world *world, const gfx_batch *batch,
+                               uint32_t features) {
+    bool shaded = features & GFX_FEATURE_TEXTURES && !(features & GFX_FEATURE_DEPTH_ONLY);
+    return shaded && material_state(d, batch->material)->hooked
+               ? &world->materials.hook[batch->material - 1]
+               : NULL;
+}
+
+// A script's shader that does not build is logged once, and its material drawn without it: then
+// *hook becomes NULL.
+static GLuint program_of(gfx_device *d, const char *fragment, uint32_t features,
+                         const gfx_hook **hook) {
+    GLuint program =
+        *hook ? gfx_shaders_get_hooked(&d->shaders, "scene.vert", fragment, features, (*hook)->path)
+              : 0;
+    *hook = program ? *hook : NULL;
+    return program ? program : gfx_shaders_get(&d->shaders, "scene.vert", fragment, features);
+}
+
 // The one place where programs, vertex arrays, textures and cull state change between draws.
 static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end,
                    const char *fragment, uint32_t features) {
@@ -249,7 +269,8 @@ static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end
         if (features & GFX_FEATURE_DEPTH_ONLY && !(own & GFX_FEATURE_ALPHA_MASK)) {
             own &= GFX_FEATURE_SKINNING; // depth needs no more of an opaque material
         }
-        GLuint program = gfx_shaders_get(&d->shaders, "scene.vert", fragment, features | own);
+        const gfx_hook *hook = hook_of(d, world, batch, features | own);
+        GLuint program = program_of(d, fragment, features | own, &hook);
         if (!program) {
             ok = false;
             break;
@@ -262,6 +283,9 @@ static bool submit(gfx_device *d, gfx_world *world, uint32_t first, uint32_t end
         }
         if (own & GFX_FEATURE_TEXTURES) {
             glBindTextures(0, GFX_MATERIAL_TEXTURES, material_state(d, batch->material)->texture);
+        }
+        if (hook) {
+            glUniform4fv(GFX_U_PARAMETERS, GFX_PARAMETERS / 4, hook->parameters);
         }
         if (batch->double_sided != two_sided) {
             (batch->double_sided ? glDisable : glEnable)(GL_CULL_FACE);

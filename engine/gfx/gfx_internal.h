@@ -79,7 +79,15 @@ typedef struct gfx_mesh_store {
 
 #define GFX_MESH_COLUMNS(X) X(gfx_mesh_store, store, 0)
 CORE_COLUMNS_DECLARE(gfx_meshes, GFX_MESH_COLUMNS)
-#define GFX_MATERIAL_COLUMNS(X) X(core_material_data, data, 0)
+typedef struct gfx_hook { // part of a shader that a script wrote
+    char path[64];        // "": none
+    float parameters[GFX_PARAMETERS];
+    bool encoded;   // of an effect
+    uint64_t order; // of its creation
+} gfx_hook;
+#define GFX_MATERIAL_COLUMNS(X)                                                                    \
+    X(core_material_data, data, 0)                                                                 \
+    X(gfx_hook, hook, 0)
 CORE_COLUMNS_DECLARE(gfx_materials, GFX_MATERIAL_COLUMNS)
 
 typedef struct gfx_viewport_store {
@@ -88,6 +96,8 @@ typedef struct gfx_viewport_store {
     char target[64]; // "": the picture
     uint32_t width, height;
 } gfx_viewport_store;
+#define GFX_EFFECT_COLUMNS(X) X(gfx_hook, hook, 0)
+CORE_COLUMNS_DECLARE(gfx_effects, GFX_EFFECT_COLUMNS)
 #define GFX_VIEWPORT_COLUMNS(X) X(gfx_viewport_store, store, 0)
 CORE_COLUMNS_DECLARE(gfx_viewports, GFX_VIEWPORT_COLUMNS)
 
@@ -160,7 +170,9 @@ struct gfx_world {
     gfx_meshes meshes;
     gfx_materials materials;
     gfx_viewports viewports; // made by the first one
-    bool viewports_made;
+    gfx_effects effects;     // made by the first one
+    bool viewports_made, effects_made;
+    uint64_t effect_order; // of the last one
     gfx_mesh builtin[GFX_BUILTIN_MESHES];
     uint64_t mesh_version, material_version, instance_version; // raised by every change
     uint64_t row_version;    // of instances: by every change of any column
@@ -195,6 +207,14 @@ static inline bool gfx_world_has_default_sun(const gfx_world *world) {
 int gfx_find_name(const char *name, const char *const *names, int count); // -1: none
 // core_fail with the nearest name and the whole list.
 bool gfx_fail_name(const char *what, const char *name, const char *const *names, int count);
+
+// ---- shaders of scripts (gfx_effect.c) ----
+// Fills the hook; false + core_fail when there is no such file. what: of the error.
+bool gfx_hook_make(const gfx_world *world, const char *what, const char *path,
+                   const float parameters[GFX_PARAMETERS], gfx_hook *out);
+static inline uint32_t gfx_effect_count(const gfx_world *world) {
+    return world->effects_made ? core_columns_count(&world->effects.set) : 0;
+}
 
 // ---- meshes (gfx_mesh.c) ----
 void gfx_mesh_store_release(gfx_mesh_store *store);

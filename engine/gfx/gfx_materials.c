@@ -25,11 +25,11 @@ static GLuint map_of(gfx_device *d, const char *path, bool srgb, const char *fal
     return gfx_texture_get(d, fallback, srgb)->name;
 }
 
-static gfx_material_state state_of(gfx_device *d, const core_material_data *m) {
-    gfx_material_state s = {.double_sided = m->double_sided};
+static gfx_material_state state_of(gfx_device *d, const core_material_data *m, bool hooked) {
+    gfx_material_state s = {.double_sided = m->double_sided, .hooked = hooked};
     s.features |= m->alpha_mode == 1 ? GFX_FEATURE_ALPHA_MASK : 0;
     s.features |= m->alpha_mode == 2 ? GFX_FEATURE_BLEND : 0;
-    if (m->base_color_image[0] || m->normal_image[0] || m->metallic_roughness_image[0] ||
+    if (hooked || m->base_color_image[0] || m->normal_image[0] || m->metallic_roughness_image[0] ||
         m->occlusion_image[0] || m->emissive_image[0]) {
         bool missing = false;
         GLuint *t = s.texture;
@@ -63,7 +63,8 @@ void gfx_materials_update(gfx_device *d, const gfx_world *world) {
     state[0] = (gfx_material_state){0};
     for (uint32_t i = 0; i < n; ++i) {
         write_block(&world->materials.data[i], &block[i + 1]);
-        state[i + 1] = state_of(d, &world->materials.data[i]);
+        state[i + 1] =
+            state_of(d, &world->materials.data[i], world->materials.hook[i].path[0] != 0);
     }
     glDeleteBuffers(1, &c->buffer);
     glCreateBuffers(1, &c->buffer);

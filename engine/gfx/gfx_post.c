@@ -94,6 +94,43 @@ static bool neutral(const gfx_settings *s) {
     return same;
 }
 
+// The effect that was made next after `order`, NULL: none.
+static const gfx_hook *next_effect(const gfx_world *world, uint64_t order) {
+    const gfx_hook *next = NULL;
+    for (uint32_t i = 0; i < gfx_effect_count(world); ++i) {
+        const gfx_hook *hook = &world->effects.hook[i];
+        next = hook->order > order && (!next || hook->order < next->order) ? hook : next;
+    }
+    return next;
+}
+
+// Passes that scripts wrote: each from `from` to `spare`, and back. One that does not build is left
+// out.
+static void run_effects(gfx_device *d, const gfx_world *world, const gfx_targets *t, bool encoded) {
+    const gfx_target *from = encoded ? &t->picture : &t->hdr;
+    const gfx_target *to = encoded ? &t->spare : &t->spare_hdr;
+    const gfx_hook *hook = NULL;
+    while (to->name && (hook = next_effect(world, hook ? hook->order : 0)) != NULL) {
+        GLuint program = hook->encoded == encoded
+                             ? gfx_shaders_get_hooked(&d->shaders, "fullscreen.vert", "effect.frag",
+                                                      0, hook->path)
+                             : 0;
+        if (!program) {
+            continue;
+        }
+        d->passes++;
+        gfx_post_begin(d, to);
+        glBindTextureUnit(GFX_TEX_HDR, from->texture);
+        glBindTextureUnit(GFX_TEX_DEPTH, t->depth);
+        glUseProgram(program);
+        glUniform4fv(GFX_U_PARAMETERS, GFX_PARAMETERS / 4, hook->parameters);
+        glBindVertexArray(d->empty_vao);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        glCopyImageSubData(to->texture, GL_TEXTURE_2D, 0, 0, 0, 0, from->texture, GL_TEXTURE_2D, 0,
+                           0, 0, 0, (GLsizei)t->width, (GLsizei)t->height, 1);
+    }
+}
+
 bool gfx_post_finish(gfx_device *d, const gfx_world *world, gfx_targets *t) {
     const gfx_settings *s = &world->settings;
     uint32_t features = 0;
@@ -102,6 +139,7 @@ bool gfx_post_finish(gfx_device *d, const gfx_world *world, gfx_targets *t) {
         features |= s->auto_exposure ? GFX_FEATURE_AUTO_EXPOSURE : 0;
         features |= neutral(s) ? 0 : GFX_FEATURE_GRADE;
     }
+    run_effects(d, world, t, false);
     if (features & GFX_FEATURE_AUTO_EXPOSURE) {
         if (!expose(d, t)) {
             return false;
@@ -122,7 +160,10 @@ bool gfx_post_finish(gfx_device *d, const gfx_world *world, gfx_targets *t) {
     if (fxaa) {
         gfx_post_begin(d, &t->picture);
         glBindTextureUnit(GFX_TEX_HDR, t->encoded.texture);
-        return gfx_post_fill(d, "fxaa.frag", 0);
+        if (!gfx_post_fill(d, "fxaa.frag", 0)) {
+            return false;
+        }
     }
+    run_effects(d, world, t, true);
     return true;
 }

@@ -28,6 +28,8 @@ typedef struct source {
     int lines; // in out so far
     char file[GFX_SHADER_FILES][GFX_SHADER_PATH];
     int files;
+    const char *hook; // path that the name HOOK stands for
+    int hook_file;    // its number, -1: not there yet
     span span[MAX_SPANS];
     int spans;
     uint64_t stamp; // of all files together
@@ -108,14 +110,19 @@ static bool add_file(source *s, const char *name) {
         return core_fail_quiet("more than %d files in one shader", GFX_SHADER_FILES);
     }
     char path[GFX_SHADER_PATH + 16];
-    snprintf(path, sizeof path, "shaders/%s", name);
+    bool hook = strcmp(name, "HOOK") == 0;
+    if (hook && !s->hook[0]) {
+        return true; // includes know no #ifdef
+    }
+    snprintf(path, sizeof path, "%s%s", hook ? "" : "shaders/", hook ? s->hook : name);
     char *data = core_vfs_read(s->vfs, path, NULL);
     if (!data) {
         return false;
     }
     s->stamp = core_hash_mix(s->stamp, core_vfs_stamp(s->vfs, path));
     int file = s->files++;
-    snprintf(s->file[file], sizeof s->file[file], "%s", name);
+    s->hook_file = hook ? file : s->hook_file;
+    snprintf(s->file[file], sizeof s->file[file], "%s", hook ? s->hook : name);
     bool ok = add_lines(s, data, file);
     core_free(data);
     return ok;
@@ -165,14 +172,14 @@ static void fail_with_log(const source *s, const char *log) {
         why = close ? close + 1 : why;
     }
     why += strspn(why, ": ");
-    core_fail("shaders/%s:%d: %.*s", s->file[in->file], in->line + line - in->first,
-              (int)strcspn(why, "\n"), why);
+    core_fail("%s%s:%d: %.*s", in->file == s->hook_file ? "" : "shaders/", s->file[in->file],
+              in->line + line - in->first, (int)strcspn(why, "\n"), why);
 }
 
-static GLuint compile(core_vfs *vfs, GLenum stage, const char *name, uint32_t features,
+static GLuint compile(core_vfs *vfs, GLenum stage, const char *name, const gfx_program *p,
                       uint64_t *stamp) {
-    source s = {.vfs = vfs, .stamp = *stamp};
-    add_head(&s, features);
+    source s = {.vfs = vfs, .stamp = *stamp, .hook = p->hook, .hook_file = -1};
+    add_head(&s, p->features);
     GLuint shader = 0;
     if (!add_file(&s, name)) {
         core_fail("shader %s: %s", name, core_last_error());
@@ -218,7 +225,7 @@ static GLuint build(core_vfs *vfs, gfx_program *p) {
     p->stamp = 0;
     for (int i = 0; i < 3; ++i) {
         if (file[i] && ok) {
-            GLuint shader = compile(vfs, stage[i], file[i], p->features, &p->stamp);
+            GLuint shader = compile(vfs, stage[i], file[i], p, &p->stamp);
             ok = shader != 0;
             if (ok) {
                 glAttachShader(name, shader);
@@ -239,7 +246,7 @@ static uint64_t stamp_of(core_vfs *vfs, const gfx_program *p) {
     uint64_t stamp = 0;
     for (int i = 0; i < 3; ++i) {
         if (file[i]) {
-            source s = {.vfs = vfs, .stamp = stamp};
+            source s = {.vfs = vfs, .stamp = stamp, .hook = p->hook, .hook_file = -1};
             add_file(&s, file[i]);
             stamp = s.stamp;
             core_free(s.out.data);
@@ -256,7 +263,8 @@ static GLuint get(gfx_shaders *shaders, const gfx_program *want) {
     for (uint32_t i = 0; i < shaders->count; ++i) {
         const gfx_program *p = &shaders->program[i];
         if (p->features == want->features && same(p->vertex, want->vertex) &&
-            same(p->fragment, want->fragment) && same(p->compute, want->compute)) {
+            same(p->fragment, want->fragment) && same(p->compute, want->compute) &&
+            strcmp(p->hook, want->hook) == 0) {
             return p->name ? p->name
                            : (core_fail_quiet("shader %s did not build",
                                               p->vertex ? p->vertex : p->compute),
@@ -276,6 +284,14 @@ static GLuint get(gfx_shaders *shaders, const gfx_program *want) {
 GLuint gfx_shaders_get(gfx_shaders *shaders, const char *vertex, const char *fragment,
                        uint32_t features) {
     gfx_program want = {.vertex = vertex, .fragment = fragment, .features = features};
+    return get(shaders, &want);
+}
+
+GLuint gfx_shaders_get_hooked(gfx_shaders *shaders, const char *vertex, const char *fragment,
+                              uint32_t features, const char *hook) {
+    gfx_program want = {
+        .vertex = vertex, .fragment = fragment, .features = features | GFX_FEATURE_HOOK};
+    snprintf(want.hook, sizeof want.hook, "%s", hook);
     return get(shaders, &want);
 }
 

@@ -31,7 +31,8 @@
     X(AUTO_EXPOSURE, "USE_AUTO_EXPOSURE")                                                          \
     X(GRADE, "USE_GRADE")                                                                          \
     X(TERRAIN, "USE_TERRAIN")                                                                      \
-    X(SMOOTH, "USE_SMOOTH")
+    X(SMOOTH, "USE_SMOOTH")                                                                        \
+    X(HOOK, "USE_HOOK")
 
 #define GFX_FEATURE_INDEX_(id, name) GFX_FEATURE_INDEX_##id,
 #define GFX_FEATURE_BIT_(id, name)   GFX_FEATURE_##id = 1u << GFX_FEATURE_INDEX_##id,
@@ -43,6 +44,7 @@ enum { GFX_SHADER_FILES = 32, GFX_SHADER_PATH = 64, GFX_PROGRAM_VARIANTS = 256 }
 typedef struct gfx_program {
     const char *vertex, *fragment, *compute; // file names; literals
     uint32_t features;
+    char hook[GFX_SHADER_PATH]; // virtual path of what #include "HOOK" stands for, "": none
     GLuint name; // 0: it failed, and fails again without a new attempt until files change
     uint64_t stamp;
 } gfx_program;
@@ -58,6 +60,9 @@ void gfx_shaders_release(gfx_shaders *shaders);
 // core_fail with the file and line of the first error.
 GLuint gfx_shaders_get(gfx_shaders *shaders, const char *vertex, const char *fragment,
                        uint32_t features);
+// The same with a script's file in it: `hook` is its virtual path.
+GLuint gfx_shaders_get_hooked(gfx_shaders *shaders, const char *vertex, const char *fragment,
+                              uint32_t features, const char *hook);
 GLuint gfx_shaders_compute(gfx_shaders *shaders, const char *compute, uint32_t features);
 // Builds again what was made from files that changed since; false + core_fail when a program fails,
 // which then keeps its old form.

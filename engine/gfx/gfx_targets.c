@@ -106,13 +106,23 @@ static bool fit_bloom(gfx_device *d, const gfx_settings *s, gfx_targets *t) {
     return ok;
 }
 
+static bool has_effect(const gfx_world *world, bool encoded) {
+    bool found = false;
+    for (uint32_t i = 0; i < gfx_effect_count(world) && !world->settings.debug; ++i) {
+        found |= world->effects.hook[i].encoded == encoded;
+    }
+    return found;
+}
+
 bool gfx_targets_fit(gfx_device *d, const gfx_world *world, gfx_targets *t) {
     const gfx_settings *s = &world->settings;
     uint32_t w = t->width, h = t->height;
     bool ao = s->ao > 0.0f && !s->debug, fxaa = s->fxaa && !s->debug;
     return fit_samples(d, world, t) && fit(&t->ao, ao, GL_R16, w, h, GL_NEAREST) &&
            fit(&t->ao_smooth, ao, GL_R16, w, h, GL_NEAREST) && fit_bloom(d, s, t) &&
-           fit(&t->encoded, fxaa, GL_RGBA8, w, h, GL_LINEAR);
+           fit(&t->encoded, fxaa, GL_RGBA8, w, h, GL_LINEAR) &&
+           fit(&t->spare_hdr, has_effect(world, false), hdr_format(d), w, h, GL_LINEAR) &&
+           fit(&t->spare, has_effect(world, true), GL_RGBA8, w, h, GL_LINEAR);
 }
 
 void gfx_targets_add_image(gfx_targets *t) {
@@ -127,7 +137,7 @@ void gfx_targets_add_image(gfx_targets *t) {
 bool gfx_targets_resize(gfx_device *d, gfx_targets *t, uint32_t width, uint32_t height) {
     gfx_targets_release(t);
     t->width = width, t->height = height;
-    make_target(&t->hdr, hdr_format(d), width, height, GL_NEAREST);
+    make_target(&t->hdr, hdr_format(d), width, height, GL_LINEAR);
     make_target(&t->picture, GL_RGBA8, width, height, GL_LINEAR);
     t->depth = make_depth(width, height);
     glNamedFramebufferTexture(t->hdr.name, GL_DEPTH_ATTACHMENT, t->depth, 0);
@@ -135,7 +145,8 @@ bool gfx_targets_resize(gfx_device *d, gfx_targets *t, uint32_t width, uint32_t 
 }
 
 void gfx_targets_release(gfx_targets *t) {
-    gfx_target *const all[] = {&t->hdr, &t->picture, &t->ao, &t->ao_smooth, &t->encoded, &t->image};
+    gfx_target *const all[] = {&t->hdr,     &t->picture, &t->ao,        &t->ao_smooth,
+                               &t->encoded, &t->image,   &t->spare_hdr, &t->spare};
     for (size_t i = 0; i < CORE_COUNT_OF(all); ++i) {
         release_target(all[i]);
     }
@@ -156,6 +167,8 @@ size_t gfx_targets_bytes(const gfx_device *d, const gfx_targets *t) {
     bytes += t->ao.texture ? pixels * 4 : 0;
     bytes += t->encoded.texture ? pixels * 4 : 0;
     bytes += t->image.texture ? pixels * 4 : 0;
+    bytes += t->spare.texture ? pixels * 4 : 0;
+    bytes += t->spare_hdr.texture ? pixels * hdr : 0;
     for (size_t i = 0; i < GFX_BLOOM_LEVELS; ++i) {
         bytes += (size_t)t->bloom[i].width * t->bloom[i].height * hdr;
     }

@@ -66,6 +66,9 @@ void gfx_world_destroy(gfx_world *world) {
     core_columns_release(&world->instances.set);
     core_columns_release(&world->meshes.set);
     core_columns_release(&world->materials.set);
+    if (world->effects_made) {
+        core_columns_release(&world->effects.set);
+    }
     if (world->viewports_made) {
         core_columns_release(&world->viewports.set);
     }
@@ -321,10 +324,16 @@ gfx_material gfx_material_create(gfx_world *world, const gfx_material_desc *desc
         core_fail("gfx_material_create: start from gfx_material_desc_default()");
         return CORE_NULL_HANDLE;
     }
+    gfx_hook hook = {0};
+    if (desc->fragment &&
+        !gfx_hook_make(world, "gfx_material_create", desc->fragment, desc->parameters, &hook)) {
+        return CORE_NULL_HANDLE;
+    }
     gfx_material material = core_columns_add(&world->materials.set);
     uint32_t i = core_columns_row(&world->materials.set, material);
     if (i != CORE_NO_ROW) {
         world->materials.data[i] = desc->data;
+        world->materials.hook[i] = hook;
         world->material_version++;
     }
     return material;
@@ -338,6 +347,17 @@ bool gfx_material_destroy(gfx_world *world, gfx_material material) {
 
 bool gfx_material_alive(const gfx_world *world, gfx_material material) {
     return core_columns_row(&world->materials.set, material) != CORE_NO_ROW;
+}
+
+bool gfx_material_set_parameters(gfx_world *world, gfx_material material,
+                                 const float parameters[16]) {
+    uint32_t i = core_columns_row(&world->materials.set, material);
+    if (i == CORE_NO_ROW) {
+        return core_fail("gfx_material_set_parameters: the handle is stale or null");
+    }
+    gfx_hook *hook = &world->materials.hook[i];
+    memcpy(hook->parameters, parameters, sizeof hook->parameters);
+    return true;
 }
 
 // ---- instances ----
