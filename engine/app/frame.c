@@ -75,7 +75,11 @@ bool app_frame_files(app_run *r, uint64_t step) {
     for (uint32_t i = 0; i < r->opt->shot_count; i++) {
         const app_shot *shot = &r->opt->shot[i];
         snprintf(path, sizeof path, "%.*s", (int)shot->path_length, shot->path);
-        if (shot_due(r, shot, step) && !gfx_device_shot(r->device, path)) {
+        if (!shot_due(r, shot, step)) {
+            continue;
+        }
+        if (shot->pass[0] ? !gfx_device_shot_pass(r->device, shot->pass, path)
+                          : !gfx_device_shot(r->device, path)) {
             return app_fail(r, APP_EXIT_USAGE);
         }
     }

@@ -128,14 +128,23 @@ static bool read_shot(app_options *o, const option_spec *option, const char *tex
         return core_fail("corsac run: more than %d --%s", APP_MAX_SHOTS, option->name);
     }
     app_shot shot = {.path = text, .path_length = strlen(text)};
-    const char *at = strrchr(text, '@'), *end;
+    const char *at = strrchr(text, '@'), *end = strstr(text, ".png:");
+    if (end) { // FILE.png:PASS@STEP
+        end += 4;
+        shot.path_length = (uint64_t)(end - text);
+        size_t length = at > end ? (size_t)(at - end) - 1 : strlen(end + 1);
+        if (length >= sizeof shot.pass) {
+            return core_fail("corsac run: --shot is '%s': there is no such pass", text);
+        }
+        memcpy(shot.pass, end + 1, length);
+    }
     if (at && at[1]) {
         if (!read_whole(at + 1, &shot.step, &end) || *end || !shot.step) {
-            return core_fail("corsac run: --shot is '%s', expected FILE.png or FILE.png@STEP with "
-                             "STEP from 1",
+            return core_fail("corsac run: --shot is '%s', expected FILE.png[:PASS] or "
+                             "FILE.png[:PASS]@STEP with STEP from 1",
                              text);
         }
-        shot.path_length = (uint64_t)(at - text);
+        shot.path_length = shot.pass[0] ? shot.path_length : (uint64_t)(at - text);
     }
     if (shot.path_length < 5 || strncmp(text + shot.path_length - 4, ".png", 4) != 0) {
         return core_fail("corsac run: --shot is '%s', expected a file name that ends in .png",
@@ -180,8 +189,8 @@ static const option_spec table[] = {
      .help = "auto, forward, clustered or none"},
     {"size", "WxH", read_size, AT(size), .low = 16, .high = 16384,
      .help = "pixels of window, shots and video (1280x720)"},
-    {"shot", "FILE.png[@STEP]", read_shot, 0,
-     .help = "picture of a step (the last one); repeatable"},
+    {"shot", "FILE.png[:PASS][@STEP]", read_shot, 0,
+     .help = "picture of a step (the last one), or of a pass: hdr, depth, ao, bloom; repeatable"},
     {"video", "DIR", read_text, AT(video), .help = "a picture of every step in DIR"},
     {"audio", "FILE.wav", read_text, AT(audio), .help = "what the listener hears, in step time"},
     {"metrics", "FILE.json|-", read_text, AT(metrics), .help = "all figures of the run as JSON"},

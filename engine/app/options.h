@@ -16,6 +16,7 @@ typedef struct app_shot {
     const char *path;
     uint64_t path_length; // bytes of path before "@STEP"
     uint64_t step;        // 0: the last one
+    char pass[16];        // of the frame, "": the picture
 } app_shot;
 
 typedef struct app_options {

@@ -38,6 +38,8 @@ static GLuint make_depth(uint32_t width, uint32_t height) {
     glTextureStorage2D(t, 1, GL_DEPTH_COMPONENT32F, (GLsizei)width, (GLsizei)height);
     glTextureParameteri(t, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(t, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTextureParameteri(t, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(t, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     return t;
 }
 

@@ -133,6 +133,8 @@ typedef struct material_options {
     float base_color[4], emissive[4], metallic, roughness, normal_scale, occlusion, cutoff;
     int alpha;
     bool double_sided;
+    const char *fragment;
+    bind_numbers parameters;
     const char *base_color_map, *normal_map, *metallic_roughness_map, *occlusion_map, *emissive_map;
 } material_options;
 typedef struct material_call {
@@ -168,6 +170,11 @@ static int new_material(script *s, lua_State *L, void *args) {
     copy_path(L, m->metallic_roughness_image, o->metallic_roughness_map);
     copy_path(L, m->occlusion_image, o->occlusion_map);
     copy_path(L, m->emissive_image, o->emissive_map);
+    if (o->fragment && s->as_mod) {
+        bind_error(L, "corsac.gfx.newMaterial: options.fragment: mods may not bring shaders");
+    }
+    desc.fragment = o->fragment;
+    bind_shader_parameters(L, "corsac.gfx.newMaterial", &o->parameters, desc.parameters);
     gfx_material material = gfx_material_create(scene_gfx(s->scene), &desc);
     if (core_handle_is_null(material)) {
         bind_fail(L);
@@ -180,7 +187,22 @@ static int material_destroy(script *s, lua_State *L, void *args) {
     return done(L, gfx_material_destroy(scene_gfx(s->scene), *(core_handle *)args));
 }
 
+typedef struct material_parameters_args {
+    core_handle self;
+    bind_numbers parameters;
+} material_parameters_args;
+static int material_set_parameters(script *s, lua_State *L, void *args) {
+    const material_parameters_args *a = args;
+    float parameters[16];
+    bind_shader_parameters(L, "Material:setParameters", &a->parameters, parameters);
+    return done(L, gfx_material_set_parameters(scene_gfx(s->scene), a->self, parameters));
+}
+
 static const bind_fn material_methods[] = {
+    {"setParameters", "Changes what parameter(i) gives in the material's shader.",
+     BIND_ARGS({"parameters", BIND_NUMBERS, BIND_AT(material_parameters_args, parameters),
+                "up to 16 numbers; the others become 0"}),
+     NULL, sizeof(material_parameters_args), BIND_RUNNING, .run = material_set_parameters},
     {"destroy", "Removes the material: what has it is drawn in the plain one.", NULL, NULL,
      sizeof(core_handle), BIND_RUNNING, .mod = true, .cost = 20, .run = material_destroy},
     {0}};
@@ -214,6 +236,9 @@ static const bind_arg material_fields[] = {
     {"metallicRoughnessMap", MAP(metallic_roughness_map, "image file: green rough, blue metallic")},
     {"occlusionMap", MAP(occlusion_map, "image file: red")},
     {"emissiveMap", MAP(emissive_map, "image file, sRGB")},
+    {"fragment", MAP(fragment, "shader file with void surface(inout Look look); not for mods")},
+    {"parameters", BIND_NUMBERS, BIND_AT(material_options, parameters),
+     "parameter(0) to parameter(15) of the shader", .optional = true},
     {0}};
 
 // ---- environment and settings ----

@@ -5,6 +5,9 @@
 #include "script/bind.h"
 
 extern const bind_type bind_light_type, bind_material_type, bind_emitter_type, bind_terrain_type,
-    bind_view_type;
+    bind_view_type, bind_effect_type;
+// Up to 16 numbers for a shader of the script; the rest is 0. More is an error.
+void bind_shader_parameters(lua_State *L, const char *call, const bind_numbers *numbers,
+                            float out[16]);
 
 #endif

@@ -400,6 +400,10 @@ function Light:destroy() end
 ---@class corsac.Material
 local Material = {}
 
+---Changes what parameter(i) gives in the material's shader.
+---@param parameters number[] up to 16 numbers; the others become 0
+function Material:setParameters(parameters) end
+
 ---Removes the material: what has it is drawn in the plain one.
 function Material:destroy() end
 
@@ -422,6 +426,17 @@ function View:setCamera(options) end
 
 ---Removes the view; who shows its texture shows a checker then.
 function View:destroy() end
+
+---A pass over the picture by a shader of the game.
+---@class corsac.Effect
+local Effect = {}
+
+---Changes what parameter(i) gives in the shader.
+---@param parameters number[] up to 16 numbers; the others become 0
+function Effect:setParameters(parameters) end
+
+---Takes the pass away.
+function Effect:destroy() end
 
 ---A source of particles.
 ---@class corsac.Emitter
@@ -1876,6 +1891,8 @@ function corsac.gfx.newLight(options) end
 ---@field metallicRoughnessMap? string image file: green rough, blue metallic
 ---@field occlusionMap? string image file: red
 ---@field emissiveMap? string image file, sRGB
+---@field fragment? string shader file with void surface(inout Look look); not for mods
+---@field parameters? number[] parameter(0) to parameter(15) of the shader
 
 ---Makes a material.
 ---@param options corsac.gfx.newMaterial.options the material
@@ -1980,6 +1997,19 @@ function corsac.gfx.getCamera() end
 ---@param options corsac.gfx.newView.options the view
 ---@return corsac.View view
 function corsac.gfx.newView(options) end
+
+---Passes over the picture.
+corsac.gfx = {}
+
+---@class corsac.gfx.newEffect.options
+---@field fragment string shader file with vec3 effect(vec2 uv), which may call picture(uv), depth(uv), size(), parameter(i)
+---@field encoded? boolean on the picture after the tone map, not on linear light before it
+---@field parameters? number[] parameter(0) to parameter(15) of the shader
+
+---Adds a pass over each view's picture by a shader of the game.
+---@param options corsac.gfx.newEffect.options the pass
+---@return corsac.Effect effect
+function corsac.gfx.newEffect(options) end
 
 ---Shapes, sprites and text over the frame; places on the screen.
 corsac.gfx = {}

@@ -91,6 +91,9 @@ class GfxScenes(SceneCase):
     def test_transparent(self):
         self.golden("transparent")
 
+    def test_shader(self):
+        self.golden("shader", "--steps", 20)
+
     def test_an_effect_of_no_strength_is_not_there(self):
         """The receipt shows it: the passes, shaders and bytes of a scene that never named it."""
         def passes(*args):
