@@ -120,6 +120,20 @@ void phys_integrate_rotation(phys_bodies *b, uint32_t i, float h) {
     phys_put_quat(b, i, framed ? phys_quat_mul(q, phys_conj(b->iq[i])) : q);
 }
 
+core_vec3 phys_momentum_of(const phys_bodies *b, uint32_t i, core_quat q, core_vec3 w) {
+    core_vec3 inv = phys_get3(b->ix, b->iy, b->iz, i);
+    q = phys_quat_mul(q, b->iq[i]);
+    core_vec3 l = rotate_exact(phys_conj(q), w);
+    return rotate_exact(q, core_v3(l.x / inv.x, l.y / inv.y, l.z / inv.z));
+}
+
+core_vec3 phys_spin_of(const phys_bodies *b, uint32_t i, core_quat q, core_vec3 momentum) {
+    core_vec3 inv = phys_get3(b->ix, b->iy, b->iz, i);
+    q = phys_quat_mul(q, b->iq[i]);
+    core_vec3 l = rotate_exact(phys_conj(q), momentum);
+    return rotate_exact(q, core_v3(l.x * inv.x, l.y * inv.y, l.z * inv.z));
+}
+
 core_quat phys_turned(core_quat q, core_vec3 turn) {
     float angle = core_v3_length(turn), s, c;
     if (angle == 0.0f) {

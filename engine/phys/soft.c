@@ -21,6 +21,7 @@
 #define FIRST_TOUCH_MOST   64u
 #define FIRST_TOUCH_PASSES 6
 #define PUSH_MAX           3.0f // m/s
+#define TOP_TURN           0.1f // rad a step
 
 enum { GROUP_BALLS, GROUP_MANIFOLDS, GROUP_FIXED_BALLS, GROUP_FIXED_MANIFOLDS, GROUPS };
 
@@ -37,12 +38,23 @@ typedef struct soft_place {
     uint32_t lane;
 } soft_place;
 
+typedef struct soft_top {
+    uint32_t place;
+    core_quat at;       // its rotation, composed of the turns so far
+    core_vec3 turn;     // their sum
+    core_vec3 spin;     // angular velocity as it was left
+    core_vec3 momentum; // what belongs to it
+} soft_top;
+
 typedef struct soft {
     phys_world *world;
     // What this level of substeps is about: rows of bodies and contacts, and each body row's place.
     uint32_t *body, *ball, *contact, *index;
     uint32_t ball_count, contact_count;
     uint32_t *locked, locked_count; // places of bodies with locked axes
+    soft_top *tops;                 // bodies that spin fast while they are held
+    uint32_t top_count;
+    bool *top; // by place
     soft_bodies bodies;
     soft_spring spring, spring_fixed;
     soft_group group[GROUPS];
@@ -447,6 +459,69 @@ static void hold_locks(soft *s) {
     }
 }
 
+// What spins fast while it is held (a top, a wheel on a shaft that turns): its angular momentum,
+// not its velocity, is kept from substep to substep, with the inertia of each. For the others once
+// a step is enough.
+static bool is_top(const soft *s, uint32_t k) {
+    const phys_bodies *b = &s->world->bodies;
+    uint32_t i = s->body[k];
+    core_vec3 w = phys_get3(b->wx, b->wy, b->wz, i);
+    bool held = b->touching[i] != 0 || (s->joints != NULL && s->joints->jointed[k]);
+    return held && b->type[i] == PHYS_DYNAMIC && (b->flags[i] & PHYS_BODY_ISOTROPIC) == 0 &&
+           (b->locks[i] & PHYS_LOCK_TURN) == 0 &&
+           core_v3_dot(w, w) * s->dt * s->dt > TOP_TURN * TOP_TURN;
+}
+
+static void find_tops(soft *s) {
+    s->tops = CORE_ARENA_ARRAY(&s->world->scratch, soft_top, s->bodies.count + 1);
+    s->top = CORE_ARENA_ARRAY(&s->world->scratch, bool, s->bodies.count + 1);
+    const phys_bodies *b = &s->world->bodies;
+    for (uint32_t k = 0; k < s->bodies.count; k++) {
+        uint32_t i = s->body[k];
+        s->top[k] = is_top(s, k);
+        if (s->top[k]) {
+            core_quat q = phys_body_quat(b, i);
+            core_vec3 w = phys_get3(b->wx, b->wy, b->wz, i);
+            s->tops[s->top_count++] = (soft_top){
+                .place = k, .at = q, .spin = w, .momentum = phys_momentum_of(b, i, q, w)};
+        }
+    }
+}
+
+static void turn_tops(soft *s) {
+    const phys_bodies *b = &s->world->bodies;
+    for (uint32_t n = 0; n < s->top_count; n++) {
+        soft_top *top = &s->tops[n];
+        size_t at = (size_t)top->place * 8;
+        uint32_t i = s->body[top->place];
+        float *v = s->bodies.velocity + at, *p = s->bodies.moved + at, *mark = s->bodies.mark + at;
+        core_vec3 turn = core_v3(p[4], p[5], p[6]);
+        core_quat q = phys_quat_unit(phys_turned(top->at, core_v3_sub(turn, top->turn)));
+        core_vec3 given = core_v3_sub(core_v3(v[4], v[5], v[6]), top->spin);
+        given = phys_momentum_of(b, i, phys_body_quat(b, i), given);
+        top->momentum = core_v3_add(top->momentum, given);
+        core_vec3 w = phys_spin_of(b, i, q, top->momentum);
+        float to[3] = {w.x, w.y, w.z};
+        for (int a = 0; a < 3; a++) {
+            mark[4 + a] += to[a] - v[4 + a]; // not given by a contact
+            v[4 + a] = to[a];
+        }
+        top->at = q;
+        top->turn = turn;
+        top->spin = w;
+    }
+}
+
+static void finish_tops(soft *s) {
+    for (uint32_t n = 0; n < s->top_count; n++) {
+        uint32_t k = s->tops[n].place;
+        bool chained = s->joints != NULL && s->joints->jointed[k] == PHYS_CHAINED;
+        if (!chained) {
+            phys_put_quat(&s->world->bodies, s->body[k], s->tops[n].at);
+        }
+    }
+}
+
 static void refresh_fields(soft *s) {
     const phys_bodies *b = &s->world->bodies;
     for (uint32_t k = 0; k < s->bodies.count; k++) {
@@ -483,9 +558,14 @@ static void finish_body(soft *s, uint32_t k) {
     }
     phys_put3(b->cx, b->cy, b->cz, i, core_v3_add(phys_get3(b->cx, b->cy, b->cz, i), way));
     if (s->joints != NULL && s->joints->jointed[k] == PHYS_CHAINED) {
-        phys_finish_precession(b, i, s->dt);
+        if (!s->top[k]) {
+            phys_finish_precession(b, i, s->dt);
+        }
         phys_put_quat(b, i, s->joints->rotation[k]);
         return;
+    }
+    if (s->top[k]) {
+        return; // finish_tops
     }
     phys_finish_rotation(b, i, turn, s->dt, free);
 }
@@ -516,6 +596,7 @@ static void solve_substeps(soft *s, int substeps) {
         if (fields && k > 0) {
             refresh_fields(s);
         }
+        turn_tops(s);
         flat(s, s->push);
         hold_locks(s);
         if (k == 0) {
@@ -534,6 +615,7 @@ static void solve_substeps(soft *s, int substeps) {
         }
         hold_locks(s);
     }
+    turn_tops(s);
     if (s->bounces) {
         run_pass(s, SOFT_RESTITUTE);
         hold_locks(s);
@@ -604,6 +686,7 @@ static void step_level(phys_world *w, float dt, uint32_t level) {
                                           s.ball_count + s.contact_count == 0);
         each(&s, s.ball_count, fill_ball);
         each(&s, s.contact_count, fill_manifold);
+        find_tops(&s);
         solve_substeps(&s, substeps);
         each(&s, s.ball_count, store_ball);
         each(&s, s.contact_count, store_manifold);
@@ -611,6 +694,7 @@ static void step_level(phys_world *w, float dt, uint32_t level) {
             phys_soft_joints_end(s.joints);
         }
         each(&s, s.bodies.count, finish_body);
+        finish_tops(&s);
     }
     core_arena_rewind(&w->scratch, mark);
 }

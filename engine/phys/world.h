@@ -540,6 +540,9 @@ bool phys_region_check(const char *what, phys_shape_type type, core_vec3 half, f
 
 // integrate.c
 void phys_integrate_velocity(phys_world *world, float h);
+// Angular momentum of an angular velocity in a rotation, and back.
+core_vec3 phys_momentum_of(const phys_bodies *b, uint32_t row, core_quat q, core_vec3 w);
+core_vec3 phys_spin_of(const phys_bodies *b, uint32_t row, core_quat q, core_vec3 momentum);
 core_quat phys_turned(core_quat q, core_vec3 turn);            // by a rotation vector, rad
 void phys_put_quat(phys_bodies *b, uint32_t row, core_quat q); // made of unit length
 void phys_integrate_rotation(phys_bodies *b, uint32_t row, float h);
