@@ -11,6 +11,7 @@
 #include "core/data.h"
 #include "core/jobs.h"
 #include "core/metrics.h"
+#include "core/stream.h"
 
 #define ANIM_MAX_BONES      1024u
 #define ANIM_MAX_STATES     256u
@@ -48,6 +49,10 @@ void anim_world_pose(anim_world *world);
 // a time by plain C, the baseline).
 bool anim_world_set(anim_world *world, const char *name, const char *value);
 int anim_world_state(const anim_world *world, const core_columns **out, int capacity);
+// Fields of a saved scene (core/stream.h); what points elsewhere is checked. Skeletons, clips,
+// machines and masks are not in it: the world must hold those of the one that was saved.
+// When it returns false nothing of what was there is left.
+bool anim_world_stream(anim_world *w, core_stream *s);
 size_t anim_world_bytes(const anim_world *world);
 void anim_world_counts(const anim_world *world, core_metrics *metrics); // skeletons, bones
 // Largest distance (m) between the palettes last computed and a double-precision evaluation of the

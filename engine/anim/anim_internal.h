@@ -299,5 +299,8 @@ void anim_player_remove(anim_world *w, core_handle player);
 void anim_player_start(anim_world *w, uint32_t row, uint32_t p, anim_slot to, float length,
                        anim_fade fade, bool locked);
 void anim_instance_remove(anim_world *w, uint32_t row);
+// Place in the palette range for one instance, reusing those given back.
+bool anim_take_place(anim_world *w, anim_skeleton_res *s, uint32_t *place);
+void anim_give_place(anim_skeleton_res *s, uint32_t place);
 
 #endif

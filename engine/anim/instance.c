@@ -26,8 +26,7 @@ static bool check_content(const anim_world *w, const anim_instance_desc *d) {
     return true;
 }
 
-// Place in the palette range for one instance, reusing those given back.
-static bool take_place(anim_world *w, anim_skeleton_res *s, uint32_t *place) {
+bool anim_take_place(anim_world *w, anim_skeleton_res *s, uint32_t *place) {
     if (s->free_count > 0) {
         *place = s->free_place[--s->free_count];
         return true;
@@ -45,7 +44,7 @@ static bool take_place(anim_world *w, anim_skeleton_res *s, uint32_t *place) {
     return true;
 }
 
-static void give_place(anim_skeleton_res *s, uint32_t place) {
+void anim_give_place(anim_skeleton_res *s, uint32_t place) {
     if (s->free_count == s->free_capacity) {
         uint32_t capacity = s->free_capacity ? s->free_capacity * 2 : 16;
         s->free_place = core_realloc(s->free_place, s->free_capacity * sizeof(uint32_t),
@@ -90,14 +89,14 @@ anim_instance anim_instance_create(anim_world *w, const anim_instance_desc *d) {
     }
     anim_skeleton_res *s = anim_get_skeleton(w, d->skeleton);
     uint32_t place = 0;
-    if (!s || !check_content(w, d) || !take_place(w, s, &place)) {
+    if (!s || !check_content(w, d) || !anim_take_place(w, s, &place)) {
         return CORE_NULL_HANDLE;
     }
     core_handle h = core_columns_add(&w->instances.set);
     core_handle player =
         core_handle_is_null(h) ? h : add_player(w, d->machine, d->clip, d->loop, d->time);
     if (core_handle_is_null(player)) {
-        give_place(s, place);
+        anim_give_place(s, place);
         core_columns_remove(&w->instances.set, h, NULL, NULL);
         return CORE_NULL_HANDLE;
     }
@@ -142,7 +141,7 @@ void anim_instance_remove(anim_world *w, uint32_t row) {
     for (uint32_t i = 0; i < ANIM_MAX_LAYERS; i++) {
         anim_player_remove(w, w->instances.layer[row].player[i]);
     }
-    give_place(s, w->instances.place[row]);
+    anim_give_place(s, w->instances.place[row]);
     s->users--;
     w->bones_live -= s->bones;
     core_columns_remove(&w->instances.set, core_columns_handle(&w->instances.set, row), NULL, NULL);

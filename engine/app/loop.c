@@ -120,6 +120,7 @@ static void step(app_run *r) {
         headless_frame(r, number);
     }
     core_metrics_step_end(r->metrics);
+    script_end_step(r->script);
     close_step(r, event, events, allocations);
     if (r->ghost) {
         app_ghost_step(r->ghost, event, events, core_clock_ns() - begin);

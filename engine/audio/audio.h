@@ -9,6 +9,7 @@
 #include "core/columns.h"
 #include "core/data.h"
 #include "core/metrics.h"
+#include "core/stream.h"
 
 typedef struct audio_world audio_world;
 typedef struct audio_device audio_device;
@@ -31,6 +32,10 @@ size_t audio_world_bytes(const audio_world *world);
 void audio_world_counts(const audio_world *world, core_metrics *metrics); // voices
 // State column sets, for hash, save and divergence reports (as phys_world_state).
 int audio_world_state(const audio_world *world, const core_columns **out, int capacity);
+// Fields of a saved scene (core/stream.h); what points elsewhere is checked. Sounds are not in
+// it: the world must hold those of the one that was saved.
+// When it returns false nothing of what was there is left.
+bool audio_world_stream(audio_world *w, core_stream *s);
 // Settings by name, as --set audio.NAME=VALUE reaches them. False + core_fail naming the nearest
 // name or the allowed values.
 //   voices   most sources heard at once, 1..256, default 32

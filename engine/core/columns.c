@@ -300,3 +300,26 @@ bool core_columns_restore(core_columns *set, const void *data, size_t size) {
     }
     return true;
 }
+
+const uint8_t *core_columns_saved(const core_columns *set, const void *data,
+                                  core_columns_part *out) {
+    columns_header header;
+    memcpy(&header, data, sizeof header);
+    out->count = header.count;
+    out->handles_size = core_pool_save_size(&set->pool);
+    return (const uint8_t *)data + sizeof header;
+}
+
+bool core_columns_restore_parts(core_columns *set, uint32_t count, const void *values,
+                                const void *handles, size_t handles_size) {
+    size_t bytes = state_bytes(set, count), size = sizeof(columns_header) + bytes + handles_size;
+    columns_header header = {COLUMNS_MAGIC, count, layout_hash(set),
+                             core_hash(values, bytes, count)};
+    uint8_t *block = core_alloc(size);
+    memcpy(block, &header, sizeof header);
+    memcpy(block + sizeof header, values, bytes);
+    memcpy(block + sizeof header + bytes, handles, handles_size);
+    bool good = core_columns_restore(set, block, size);
+    core_free(block);
+    return good;
+}

@@ -12,6 +12,7 @@
 #ifndef CORE_COLUMNS_H
 #define CORE_COLUMNS_H
 
+#include "core/data.h"
 #include "core/handle.h"
 
 #define CORE_COLUMNS_MAX 64
@@ -22,6 +23,7 @@ typedef struct core_column {
     const char *name;
     uint32_t size; // bytes per element
     uint32_t flags;
+    char kind; // how text shows it: 'f' floats, 'd' doubles, 'u' words, 'b' bytes, 'x' or 0 neither
 } core_column;
 
 typedef struct core_columns {
@@ -65,9 +67,24 @@ size_t core_columns_save_size(const core_columns *set);
 void core_columns_save(const core_columns *set, void *out);
 bool core_columns_restore(core_columns *set, const void *data, size_t size);
 
+// The parts of what core_columns_save gave: the STATE columns one after another (the result), then
+// the handles. And a restore from such parts, checked in the same way.
+typedef struct core_columns_part {
+    uint32_t count;
+    size_t handles_size;
+} core_columns_part;
+const uint8_t *core_columns_saved(const core_columns *set, const void *data,
+                                  core_columns_part *out);
+bool core_columns_restore_parts(core_columns *set, uint32_t count, const void *values,
+                                const void *handles, size_t handles_size);
+
 #define CORE_COLUMN_FIELD_(type, name, flags) type *name;
-#define CORE_COLUMN_DESC_(type, name, flags)  {#name, (uint32_t)sizeof(type), (flags)},
-#define CORE_COLUMN_BIND_(type, name, flags)  self->name = (type *)self->set.data[i++];
+#define CORE_COLUMN_KIND(type)                                                                     \
+    _Generic((type *)0, float *: 'f', core_vec3 *: 'f', core_quat *: 'f', double *: 'd',           \
+        uint32_t *: 'u', core_handle *: 'u', uint8_t *: 'b', default: 'x')
+#define CORE_COLUMN_DESC_(type, name, flags)                                                       \
+    {#name, (uint32_t)sizeof(type), (flags), CORE_COLUMN_KIND(type)},
+#define CORE_COLUMN_BIND_(type, name, flags) self->name = (type *)self->set.data[i++];
 
 #define CORE_COLUMNS_DECLARE(T, LIST)                                                              \
     typedef struct T {                                                                             \

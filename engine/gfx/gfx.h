@@ -7,6 +7,7 @@
 #include "core/data.h"
 #include "core/jobs.h"
 #include "core/metrics.h"
+#include "core/stream.h"
 #include "core/vfs.h"
 
 typedef struct gfx_world gfx_world;
@@ -26,6 +27,10 @@ typedef struct gfx_world_desc {
 gfx_world_desc gfx_world_desc_default(void);
 gfx_world *gfx_world_create(const gfx_world_desc *desc);
 void gfx_world_destroy(gfx_world *world);
+// Fields of a saved scene (core/stream.h): instances, lights, camera. Meshes and materials are not
+// in it: the world must hold those of the one that was saved. When it returns false nothing of what
+// was there is left.
+bool gfx_world_stream(gfx_world *world, core_stream *stream);
 size_t gfx_world_bytes(const gfx_world *world);
 // Sets lights, clusters, light_refs, draws, triangles.
 void gfx_world_counts(const gfx_world *world, core_metrics *metrics);
@@ -184,6 +189,7 @@ typedef struct gfx_instance_desc {
 } gfx_instance_desc;
 gfx_instance gfx_instance_create(gfx_world *world, const gfx_instance_desc *desc);
 bool gfx_instance_destroy(gfx_world *world, gfx_instance instance);
+bool gfx_instance_alive(const gfx_world *world, gfx_instance instance);
 bool gfx_instance_set_color(gfx_world *world, gfx_instance instance, float r, float g, float b,
                             float a);
 // World transform used by the next frames. Scene writes these once per drawn frame, interpolated.

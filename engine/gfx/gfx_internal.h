@@ -18,35 +18,36 @@ typedef struct gfx_rgba {
     float r, g, b, a;
 } gfx_rgba;
 
+// State here is what a saved scene keeps; nothing of it is hashed.
 #define GFX_LIGHT_COLUMNS(X)                                                                       \
-    X(uint32_t, type, 0)                                                                           \
-    X(float, px, 0)                                                                                \
-    X(float, py, 0)                                                                                \
-    X(float, pz, 0)                                                                                \
-    X(float, dx, 0)                                                                                \
-    X(float, dy, 0)                                                                                \
-    X(float, dz, 0)                                                                                \
-    X(float, r, 0)                                                                                 \
-    X(float, g, 0)                                                                                 \
-    X(float, b, 0)                                                                                 \
-    X(float, intensity, 0)                                                                         \
-    X(float, radius, 0)                                                                            \
-    X(float, inner, 0)                                                                             \
-    X(float, outer, 0)                                                                             \
-    X(float, source, 0)                                                                            \
-    X(uint32_t, shadows, 0)
+    X(uint32_t, type, CORE_COLUMN_STATE)                                                           \
+    X(float, px, CORE_COLUMN_STATE)                                                                \
+    X(float, py, CORE_COLUMN_STATE)                                                                \
+    X(float, pz, CORE_COLUMN_STATE)                                                                \
+    X(float, dx, CORE_COLUMN_STATE)                                                                \
+    X(float, dy, CORE_COLUMN_STATE)                                                                \
+    X(float, dz, CORE_COLUMN_STATE)                                                                \
+    X(float, r, CORE_COLUMN_STATE)                                                                 \
+    X(float, g, CORE_COLUMN_STATE)                                                                 \
+    X(float, b, CORE_COLUMN_STATE)                                                                 \
+    X(float, intensity, CORE_COLUMN_STATE)                                                         \
+    X(float, radius, CORE_COLUMN_STATE)                                                            \
+    X(float, inner, CORE_COLUMN_STATE)                                                             \
+    X(float, outer, CORE_COLUMN_STATE)                                                             \
+    X(float, source, CORE_COLUMN_STATE)                                                            \
+    X(uint32_t, shadows, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(gfx_lights, GFX_LIGHT_COLUMNS)
 
 #define GFX_INSTANCE_COLUMNS(X)                                                                    \
-    X(gfx_rows, rows, 0)                                                                           \
-    X(float, cx, 0)                                                                                \
-    X(float, cy, 0)                                                                                \
-    X(float, cz, 0)                                                                                \
-    X(float, cr, 0)         /* bounding sphere, world */                                           \
-    X(uint64_t, changed, 0) /* row_version of the last change */                                   \
-    X(gfx_rgba, color, 0)                                                                          \
-    X(gfx_mesh, mesh, 0)                                                                           \
-    X(gfx_material, material, 0)                                                                   \
+    X(gfx_rows, rows, CORE_COLUMN_STATE)                                                           \
+    X(float, cx, CORE_COLUMN_STATE)                                                                \
+    X(float, cy, CORE_COLUMN_STATE)                                                                \
+    X(float, cz, CORE_COLUMN_STATE)                                                                \
+    X(float, cr, CORE_COLUMN_STATE) /* bounding sphere, world */                                   \
+    X(uint64_t, changed, 0)         /* row_version of the last change */                           \
+    X(gfx_rgba, color, CORE_COLUMN_STATE)                                                          \
+    X(gfx_mesh, mesh, CORE_COLUMN_STATE)                                                           \
+    X(gfx_material, material, CORE_COLUMN_STATE)                                                   \
     X(float *, palette, 0)                                                                         \
     X(uint32_t, palette_bones, 0)
 CORE_COLUMNS_DECLARE(gfx_instances, GFX_INSTANCE_COLUMNS)

@@ -403,6 +403,10 @@ bool gfx_instance_destroy(gfx_world *world, gfx_instance instance) {
     return ok;
 }
 
+bool gfx_instance_alive(const gfx_world *world, gfx_instance instance) {
+    return core_columns_row(&world->instances.set, instance) != CORE_NO_ROW;
+}
+
 bool gfx_instance_set_color(gfx_world *world, gfx_instance instance, float r, float g, float b,
                             float a) {
     uint32_t i;

@@ -11,6 +11,7 @@
 #include "core/jobs.h"
 #include "core/math.h"
 #include "core/metrics.h"
+#include "core/stream.h"
 
 #define NAV_NO_NODE      UINT32_MAX
 #define NAV_REPORT_LINKS 8u // the cap on neighbours of the report's graph (4.2), as a mode
@@ -42,6 +43,10 @@ int nav_world_state(const nav_world *world, const core_columns **out, int capaci
 // The worst length of a live path over that of the shortest way between its ends, for at most
 // `most` paths spread evenly (0: all); 0 where there is none. Those with links do not count.
 double nav_world_path_ratio_max(nav_world *world, uint32_t most);
+// Fields of a saved scene (core/stream.h); what points elsewhere is checked. Surfaces and grids
+// are not in it: the world must hold those of the one that was saved.
+// When it returns false nothing of what was there is left.
+bool nav_world_stream(nav_world *w, core_stream *s);
 size_t nav_world_bytes(const nav_world *world);
 void nav_world_counts(const nav_world *world, core_metrics *metrics); // nav_nodes, agents, paths
 

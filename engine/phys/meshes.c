@@ -79,3 +79,18 @@ size_t phys_meshes_bytes(const phys_world *w) {
 const phys_mesh *phys_mesh_at(const phys_world *w, uint32_t number) {
     return &w->meshes[number - 1].mesh;
 }
+
+bool phys_mesh_stands(const phys_world *w, uint32_t number) {
+    return number - 1 < w->mesh_count && w->meshes[number - 1].users != 0;
+}
+
+void phys_meshes_recount(phys_world *w) {
+    for (uint32_t i = 0; i < w->mesh_count; i++) {
+        w->meshes[i].users = w->meshes[i].users != 0; // kept alive, as hulls are
+    }
+    for (uint32_t i = 0; i < core_columns_count(&w->shapes.set); i++) {
+        if (w->shapes.type[i] == PHYS_MESH) {
+            w->meshes[w->shapes.hull[i] - 1].users++;
+        }
+    }
+}

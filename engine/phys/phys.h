@@ -8,6 +8,7 @@
 #include "core/data.h"
 #include "core/jobs.h"
 #include "core/metrics.h"
+#include "core/stream.h"
 
 typedef struct phys_world phys_world;
 typedef core_handle phys_body;
@@ -418,6 +419,10 @@ bool phys_cloth_stretch(const phys_world *world, phys_cloth cloth, double *mean,
 size_t phys_world_save_size(phys_world *world);
 void phys_world_save(phys_world *world, void *out);
 bool phys_world_restore(phys_world *world, const void *data, size_t size);
+// The same as fields of a saved scene (core/stream.h), for files: what points elsewhere is checked.
+// Hulls and meshes are not in it: the world must hold those of the one that was saved. When it
+// returns false the world must be restored or destroyed.
+bool phys_world_stream(phys_world *world, core_stream *stream);
 
 // Joints of two bodies, or of a body and the world (a null handle). Where the joints of a group of
 // bodies form trees (any number of them to the world or to static bodies), each substep solves

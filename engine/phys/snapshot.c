@@ -71,6 +71,11 @@ bool phys_world_restore(phys_world *w, const void *data, size_t size) {
     w->gravity = h.gravity;
     w->time = h.time;
     memcpy(w->rule, h.rule, sizeof h.rule);
+    phys_world_restored(w);
+    return true;
+}
+
+void phys_world_restored(phys_world *w) {
     phys_pairs_rebuild_map(w);
     phys_static_forget(w);
     w->trees_stale = w->rows_stale = w->edited = w->joint_pairs.stale = true;
@@ -80,5 +85,4 @@ bool phys_world_restore(phys_world *w, const void *data, size_t size) {
     for (uint32_t i = 0; i < core_columns_count(&w->bodies.set); i++) {
         w->bodies.seen[i] = phys_get3(w->bodies.cx, w->bodies.cy, w->bodies.cz, i);
     }
-    return true;
 }

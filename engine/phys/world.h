@@ -399,6 +399,7 @@ static inline core_vec3 phys_lock_turn(uint8_t locks, core_vec3 w) {
 // world.c: the sets of state, in the order of hashes and snapshots.
 enum { PHYS_SETS = 13 };
 void phys_world_sets(phys_world *world, core_columns *set[PHYS_SETS]);
+void phys_world_restored(phys_world *world); // fills caches again, after columns were replaced
 
 // shape.c
 bool phys_shape_check(const phys_shape_desc *shape, phys_body_type body);
@@ -474,6 +475,8 @@ void phys_mesh_pairs_narrow(phys_world *world, float dt);
 uint32_t phys_mesh_share(phys_world *world, const phys_shape_desc *shape);
 void phys_mesh_leave(phys_world *world, uint32_t number);
 void phys_meshes_release(phys_world *world);
+bool phys_mesh_stands(const phys_world *world, uint32_t number);
+void phys_meshes_recount(phys_world *world); // after shapes were replaced
 size_t phys_meshes_bytes(const phys_world *world);
 const struct phys_mesh *phys_mesh_at(const phys_world *world, uint32_t number);
 

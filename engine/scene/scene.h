@@ -9,6 +9,7 @@
 #include "core/jobs.h"
 #include "core/metrics.h"
 #include "core/rng.h"
+#include "core/stream.h"
 #include "core/vfs.h"
 #include "gfx/gfx.h"
 #include "nav/nav.h"
@@ -217,6 +218,16 @@ uint64_t scene_hash(const scene *s);
 // a row beyond the last gives "phys.bodies (no single row)".
 void scene_describe_row(const scene *s, const core_columns *set, uint32_t row, char *out,
                         size_t size);
+// ---- saved scenes ----
+// The state of every room, what shows it, and `script` (text of the caller's, NULL: none) as one
+// block, binary ("CSV1", with a checksum) or Lua text. core_free the result.
+void *scene_save(scene *s, core_stream_form form, const char *script, size_t *size);
+// Makes the scene what it was: the hash after a load is the one at the save. Models, sounds,
+// surfaces and machines are not in a save; the scene must have those it had, as one has that ran
+// the same code. *script: the text given to save, core_free it. False + core_fail naming file and
+// field for data that is cut short, damaged or of another scene: the scene is then as before.
+bool scene_load(scene *s, const char *name, const void *data, size_t size, char **script);
+
 // counts, memory by room (bytes) for metrics.
 void scene_counts(const scene *s);
 typedef struct scene_memory {

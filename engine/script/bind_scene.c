@@ -4,6 +4,7 @@
 #include "script/bind_gfx.h"
 #include "script/bind_query.h"
 #include "script/internal.h"
+#include "script/scene_file.h"
 
 #include <string.h>
 
@@ -275,6 +276,7 @@ static const bind_fn functions[] = {
 static const bind_module modules[] = {
     {"corsac.scene", "Entities: places in the world that carry bodies and meshes.", functions},
     {"corsac.scene", "", bind_query_functions},
+    {"corsac.scene", "", bind_scene_file_functions},
     {0}};
 static const bind_type *const types[] = {&bind_entity_type, NULL};
 

@@ -61,7 +61,7 @@ core_vfs *script_player_files(script *s) {
     return files;
 }
 
-static void push_file_name(lua_State *L, const char *name) {
+void script_check_save_name(lua_State *L, const char *name) {
     size_t length = strlen(name);
     bool good = length > 0 && length <= 64;
     for (const char *c = name; *c; c++) {
@@ -70,18 +70,26 @@ static void push_file_name(lua_State *L, const char *name) {
     if (!good) {
         bind_error(L, "corsac.save: \"%.80s\": a name has 1 to 64 letters, digits, - or _", name);
     }
+}
+
+static void push_file_name(lua_State *L, const char *name) {
+    script_check_save_name(L, name);
     lua_pushfstring(L, "%s.json", name);
+}
+
+bool script_player_write(script *s, const char *name, const void *data, size_t size) {
+    if (s->host.replays && s->host.replays(s->host.ctx)) {
+        return true;
+    }
+    core_vfs *files = script_player_files(s);
+    return files && core_vfs_write(files, name, data, size);
 }
 
 int script_save_write(lua_State *L) {
     script *s = lua_touserdata(L, lua_upvalueindex(1));
     push_file_name(L, luaL_checkstring(L, 1));
     char *text = script_json_write(L, 2, "corsac.save.write: data");
-    bool good = s->host.replays && s->host.replays(s->host.ctx);
-    if (!good) {
-        core_vfs *files = script_player_files(s);
-        good = files && core_vfs_write(files, lua_tostring(L, -1), text, strlen(text));
-    }
+    bool good = script_player_write(s, lua_tostring(L, -1), text, strlen(text));
     core_free(text);
     if (!good) {
         bind_fail(L);
@@ -108,23 +116,34 @@ static char *read_player_file(script *s, lua_State *L, const char *name, size_t 
     return text;
 }
 
+char *script_player_read(script *s, lua_State *L, const char *name, size_t *size) {
+    const script_host *host = &s->host;
+    if (host->replays && host->replays(host->ctx)) {
+        const char *recorded = host->saved(host->ctx, name, size);
+        char *copy = recorded ? core_alloc(*size + 1) : NULL;
+        if (copy) {
+            memcpy(copy, recorded, *size);
+        }
+        return copy;
+    }
+    char *text = read_player_file(s, L, name, size);
+    if (host->note_saved) {
+        host->note_saved(host->ctx, name, text, text ? *size : 0);
+    }
+    return text;
+}
+
 int script_save_read(lua_State *L) {
     script *s = lua_touserdata(L, lua_upvalueindex(1));
-    const script_host *host = &s->host;
     push_file_name(L, luaL_checkstring(L, 1));
     const char *name = lua_tostring(L, -1);
     size_t size = 0;
-    bool replay = host->replays && host->replays(host->ctx);
-    char *mine = replay ? NULL : read_player_file(s, L, name, &size);
-    const char *text = replay ? host->saved(host->ctx, name, &size) : mine;
-    if (!replay && host->note_saved) {
-        host->note_saved(host->ctx, name, text, size);
-    }
+    char *text = script_player_read(s, L, name, &size);
     if (!text) {
         return 0;
     }
     bool good = script_json_read(L, text, size);
-    core_free(mine);
+    core_free(text);
     if (!good) {
         bind_error(L, "corsac.save.read: %s: %s", name, core_last_error());
     }

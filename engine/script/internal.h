@@ -78,6 +78,10 @@ struct script {
     char game[64];             // folder name of the player's files
     core_vfs *save;            // the player's files, made on first use
     char *given_data;          // JSON from the former scene
+    int scene_ask;             // what corsac.scene.save or load asked for (scene_file.c)
+    char scene_file[80];       // its file
+    void *scene_data;          // to be loaded
+    size_t scene_size;
 };
 
 // Lua's userdata of an object.

@@ -4,6 +4,7 @@
 #include "core/log.h"
 #include "script/internal.h"
 #include "script/mod.h"
+#include "script/scene_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,6 +57,7 @@ void script_destroy(script *s) {
     core_free(s->last_error);
     core_free(s->run_data);
     core_free(s->given_data);
+    script_scene_file_release(s);
     if (s->save) {
         core_vfs_destroy(s->save);
     }

@@ -89,7 +89,9 @@ bool script_load(script *s);              // corsac.load(args)
 void script_fixed(script *s, float dt);   // corsac.fixed
 void script_step_events(script *s);       // callbacks of triggers, after physics
 void script_update(script *s, double dt); // corsac.update
-void script_draw(script *s);              // corsac.draw
+// Last of a step: saves or loads the scene when the script has asked for it.
+void script_end_step(script *s);
+void script_draw(script *s); // corsac.draw
 void script_event(script *s, const char *name, const char *text, const double *values, int count);
 void script_quit(script *s); // corsac.quit
 // When a Lua file of the game changed since it was loaded: runs the files' own code anew and calls

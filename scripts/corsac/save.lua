@@ -34,3 +34,17 @@ lua["corsac.persist"] = function(name, default)
     return kept[name]
 end
 engine.kept = kept
+
+-- After a load of the scene: the game's tables stay the same tables.
+function engine.restoreKept(saved, file)
+    for name, contents in pairs(saved or {}) do
+        local mine = kept[name]
+        if mine == nil then
+            kept[name] = contents
+        else
+            for key in pairs(mine) do mine[key] = nil end
+            for key, value in pairs(contents) do mine[key] = value end
+        end
+    end
+    corsac.emit("loaded", (file:gsub("%.%w+$", "")))
+end

@@ -1541,6 +1541,16 @@ function corsac.scene.getCount() end
 ---@return corsac.Entity[] entities
 function corsac.scene.findAll(options) end
 
+---Saves the whole scene at the end of this step in the player's folder: bodies, contacts, animations, agents, sources, lights, the tables of corsac.persist. Models, sounds, surfaces, machines and functions are not in it: they are what the scene's own code makes again.
+---@param name string letters, digits, - and _
+---@param form? "binary"|"lua" packed, or text a person can read
+function corsac.scene.save(name, form) end
+
+---Makes the scene what it was when it was saved, at the end of this step, then emits "loaded" with the name. To be called in the scene that wrote it, after load. A file that is damaged or of another scene is an error, and changes nothing.
+---@param name string as given to save
+---@return boolean found
+function corsac.scene.load(name) end
+
 ---Rigid bodies: metres, kilograms, seconds, radians.
 corsac.phys = {}
 

@@ -1,0 +1,121 @@
+"""corsac.scene.save and load: a whole scene, in both forms, from Lua; recorded; damaged."""
+
+import json
+import unittest
+
+import png
+from support import SceneCase, corsac
+
+SCENE = """
+local at, from = corsac.param("at", -1), corsac.param("from", -1)
+local kept = corsac.persist("purse", { coins = 0 })
+local same = kept
+function corsac.load()
+  corsac.scene.spawn{ position = { 0, -0.5, 0 }, mesh = "box",
+    body = { type = "static", shape = "box", size = { 30, 1, 30 } } }
+  for i = 1, 30 do
+    corsac.scene.spawn{ position = { 3 * math.random(), 1 + 0.6 * i, 3 * math.random() }, mesh = "sphere",
+      body = i % 2 == 0 and { shape = "sphere", radius = 0.3 } or { shape = "box", size = 0.5 } }
+  end
+  corsac.gfx.newLight{ position = { 0, 4, 0 }, intensity = 30 }
+end
+function corsac.fixed()
+  local step = corsac.getStep()
+  kept.coins = kept.coins + 1
+  if step == at then corsac.scene.save("slot", corsac.param("form", "binary")) end
+  if step == from then corsac.metrics.set("found", corsac.scene.load("slot") and 1 or 0) end
+  if step % 7 == 0 then
+    corsac.scene.spawn{ position = { math.random(), 8, 0 }, mesh = "sphere", body = { shape = "sphere", radius = 0.2 } }
+  end
+end
+function corsac.update()
+  corsac.metrics.set("coins", same.coins)
+  corsac.metrics.set("time", corsac.getTime())
+end
+corsac.on("loaded", function(name) corsac.log("loaded " .. name .. " at step " .. corsac.getStep()) end)
+"""
+SCENE = SCENE.replace('corsac.param("form", "binary")', "form").replace(
+    "local kept", 'local form = corsac.param("form", "binary")\nlocal kept')
+
+
+class SceneSave(SceneCase):
+    def setUp(self):
+        super().setUp()
+        self.env = {"CORSAC_SAVE": str(self.dir / "player")}
+
+    def go(self, steps, *args, **options):
+        done = self.run_scene(SCENE, "--steps", steps, "--metrics", "-", *args, env=self.env, **options)
+        self.assertEqual(done.code, 0, str(done))
+        return json.loads(done.out), done.err
+
+    def test_both_forms_restore_hash_time_and_persisted_tables(self):
+        later, _ = self.go(260)
+        for form in ("binary", "lua"):
+            saved, _ = self.go(100, "--set", "at=99", "--set", f"form={form}")
+            loaded, err = self.go(20, "--set", "from=19")  # at the end of its 20th step it is where that was
+            self.assertIn("loaded slot at step 100", err)
+            self.assertEqual((loaded["hash"], loaded["user"]["found"]), (saved["hash"], 1))
+            went_on, _ = self.go(180, "--set", "from=19", "--threads", 1)  # 20, then 160 from the 100th on
+            self.assertEqual(went_on["hash"], later["hash"])
+            self.assertEqual(went_on["user"]["coins"], 260)
+            self.assertAlmostEqual(went_on["user"]["time"], later["user"]["time"], delta=1e-9)
+            (self.dir / "player/slot.csave").unlink(missing_ok=True)
+
+    def test_the_picture_is_that_of_the_save(self):
+        shots = [self.dir / "saved.png", self.dir / "loaded.png"]
+        self.go(101, "--set", "at=99", "--size", "160x90", "--shot", shots[0])
+        self.go(21, "--set", "from=19", "--size", "160x90", "--shot", shots[1])
+        self.assertEqual(png.compare(*shots, 0), 0)
+
+    def test_the_text_form_is_lua_and_an_edit_counts(self):
+        self.go(100, "--set", "at=99", "--set", "form=lua")
+        path = self.dir / "player/slot.lua"
+        text = path.read_text()
+        for part in ("return {", '["phys.bodies"] = {', "gravity = { 0, -9.81000042, 0 },", r"\034coins\034:100"):
+            self.assertTrue(part in text, part)
+        path.write_text(text.replace("gravity = { 0, -9.81000042, 0 }", "gravity = { 0, 2, 0 }"))
+        scene = SCENE + """
+            local up = corsac.fixed
+            function corsac.fixed() up() local _, y = corsac.phys.getGravity() corsac.metrics.set("gravity", y) end"""
+        done = self.run_scene(scene, "--steps", 25, "--set", "from=19", "--metrics", "-", env=self.env)
+        self.assert_exit(done, 0)
+        self.assertEqual(json.loads(done.out)["user"]["gravity"], 2)
+
+    def test_a_missing_save_is_false_and_a_damaged_one_an_error_that_changes_nothing(self):
+        missing, _ = self.go(30, "--set", "from=19")
+        self.assertEqual(missing["user"]["found"], 0)
+        self.go(100, "--set", "at=99")
+        path = self.dir / "player/slot.csave"
+        data = bytearray(path.read_bytes())
+        data[len(data) // 2] ^= 4
+        path.write_bytes(data)
+        done = self.run_scene(SCENE, "--steps", 30, "--set", "from=19", env=self.env)
+        self.assert_exit(done, 1, "slot.csave: header: the checksum is another; the file is damaged")
+        kept = self.run_scene(SCENE, "--steps", 30, "--set", "from=19", "--keep-going", "--hash", "--quiet", env=self.env)
+        self.assertEqual(kept.out.strip(), missing["hash"])
+
+    def test_a_save_of_another_scene_is_refused(self):
+        self.go(100, "--set", "at=99")
+        other = """
+            function corsac.load()
+              corsac.audio.newSource{ sound = corsac.audio.newSound("sounds/hum.wav"), loop = true }
+              corsac.scene.load("slot")
+            end"""
+        done = self.run_scene(other, "--steps", 5, env=self.env)
+        self.assert_exit(done, 1, "slot.csave: rooms: saved when the scene had other rooms")
+
+    def test_a_recording_holds_the_file_that_was_loaded(self):
+        self.go(100, "--set", "at=99")
+        file = self.dir / "run.crr"
+        was = self.run_scene(SCENE, "--steps", 60, "--set", "from=19", "--record", file, "--hash", "--quiet", env=self.env)
+        (self.dir / "player/slot.csave").unlink()
+        again = self.run_scene(SCENE, "--replay", file, "--hash", "--quiet", env=self.env)
+        self.assertEqual((again.code, again.out), (0, was.out), str(again))
+
+    def test_names_are_checked(self):
+        done = self.run_scene('function corsac.load() corsac.scene.save("../slot") end', "--steps", 2, env=self.env)
+        self.assert_exit(done, 1, "a name has 1 to 64 letters, digits, - or _")
+
+
+if __name__ == "__main__":
+    unittest.main()
