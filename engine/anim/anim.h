@@ -347,8 +347,15 @@ bool anim_instance_root_motion(const anim_world *world, anim_instance instance, 
 
 // Goals bend the finished pose, in order of their number. ANIM_GOAL_REACH: the bone and the two
 // above it are a limb whose tip goes to the target, as near as its length allows. ANIM_GOAL_LOOK:
-// the bone's axis turns to the target.
-typedef enum anim_goal_kind { ANIM_GOAL_REACH, ANIM_GOAL_LOOK } anim_goal_kind;
+// the bone's axis turns to the target. ANIM_GOAL_SHIFT: as reach, to where the pose without goals
+// has the tip, plus the target. ANIM_GOAL_MOVE: the bone and all below it move by the target,
+// before the other goals.
+typedef enum anim_goal_kind {
+    ANIM_GOAL_REACH,
+    ANIM_GOAL_LOOK,
+    ANIM_GOAL_SHIFT,
+    ANIM_GOAL_MOVE
+} anim_goal_kind;
 typedef struct anim_goal_desc {
     anim_goal_kind kind;
     uint32_t bone;

@@ -17,12 +17,13 @@ static bool check_goal(const anim_skeleton_res *s, uint32_t goal, const anim_goa
                          goal, ANIM_MAX_GOALS - 1, s->bones);
     }
     bool limb = s->parent[d->bone] >= 0 && s->parent[s->parent[d->bone]] >= 0;
-    if (d->kind == ANIM_GOAL_REACH && !limb) {
+    bool bends = d->kind == ANIM_GOAL_REACH || d->kind == ANIM_GOAL_SHIFT;
+    if (bends && !limb) {
         return core_fail("animation goal %u: bone %s needs two bones above it", goal,
                          s->name[d->bone]);
     }
     if (!finite3(d->target) || !finite3(d->pole) || !finite3(d->axis) || !isfinite(d->limit) ||
-        !(d->weight >= 0 && d->weight <= 1) || d->kind > ANIM_GOAL_LOOK) {
+        !(d->weight >= 0 && d->weight <= 1) || d->kind > ANIM_GOAL_MOVE) {
         return core_fail("animation goal %u: numbers must be finite and the weight (%g) in 0..1",
                          goal, d->weight);
     }
@@ -183,7 +184,31 @@ static void look(const anim_skeleton_res *s, const anim_goal *g, float *pose) {
     turn(s, pose, g->bone, core_quat_slerp(core_quat_identity(), full, share));
 }
 
+static void move(const anim_skeleton_res *s, const anim_goal *g, float *pose) {
+    const uint32_t n = s->stride;
+    int32_t parent = s->parent[g->bone];
+    joint frame = {{0, 0, 0}, core_quat_identity(), {1, 1, 1}};
+    frame = parent < 0 ? frame : global_of(s, pose, parent);
+    core_vec3 by = core_quat_rotate(core_quat_conjugate(frame.rotation), g->target);
+    pose[ANIM_TX * n + g->bone] += g->weight * by.x / frame.scale.x;
+    pose[ANIM_TY * n + g->bone] += g->weight * by.y / frame.scale.y;
+    pose[ANIM_TZ * n + g->bone] += g->weight * by.z / frame.scale.z;
+}
+
 void anim_goals_apply(const anim_skeleton_res *s, const anim_goals *goals, float *pose) {
+    core_vec3 tip[ANIM_MAX_GOALS]; // without goals
+    for (uint32_t i = 0; i < ANIM_MAX_GOALS; i++) {
+        const anim_goal *g = &goals->goal[i];
+        if (g->weight > 0 && g->kind == ANIM_GOAL_SHIFT) {
+            tip[i] = global_of(s, pose, (int32_t)g->bone).position;
+        }
+    }
+    for (uint32_t i = 0; i < ANIM_MAX_GOALS; i++) {
+        const anim_goal *g = &goals->goal[i];
+        if (g->weight > 0 && g->kind == ANIM_GOAL_MOVE) {
+            move(s, g, pose);
+        }
+    }
     for (uint32_t i = 0; i < ANIM_MAX_GOALS; i++) {
         const anim_goal *g = &goals->goal[i];
         if (!(g->weight > 0)) {
@@ -191,7 +216,11 @@ void anim_goals_apply(const anim_skeleton_res *s, const anim_goals *goals, float
         }
         if (g->kind == ANIM_GOAL_REACH) {
             reach(s, g, pose);
-        } else {
+        } else if (g->kind == ANIM_GOAL_SHIFT) {
+            anim_goal there = *g;
+            there.target = core_v3_add(tip[i], g->target);
+            reach(s, &there, pose);
+        } else if (g->kind == ANIM_GOAL_LOOK) {
             look(s, g, pose);
         }
     }

@@ -13,6 +13,7 @@
 CORE_COLUMNS_DEFINE(scene_entities, SCENE_ENTITY_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_names, SCENE_NAME_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_clock, SCENE_CLOCK_COLUMNS)
+CORE_COLUMNS_DEFINE(scene_feet, SCENE_FEET_COLUMNS)
 
 static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim", "nav", "audio"};
 
@@ -70,6 +71,7 @@ void scene_destroy(scene *s) {
     if (s->gfx) {
         gfx_world_destroy(s->gfx);
     }
+    core_columns_release(&s->feet.set);
     core_columns_release(&s->entity.set);
     core_columns_release(&s->name.set);
     core_columns_release(&s->clock.set);
@@ -190,6 +192,7 @@ bool scene_step(scene *s) {
         s->hooks.events(s->hooks.ctx);
         core_stage_end(s->metrics, CORE_STAGE_SCRIPT);
     }
+    scene_feet_step(s);
     scene_anim_pose(s);
     scene_audio_step(s);
     scene_emitters_step(s);
@@ -209,6 +212,12 @@ int scene_state(const scene *s, const core_columns **out, int capacity) {
         if (out && count < capacity) {
             out[count] = own[i];
         }
+    }
+    if (s->stands) {
+        if (out && count < capacity) {
+            out[count] = &s->feet.set;
+        }
+        count++;
     }
     if (s->phys) {
         int room = capacity > count ? capacity - count : 0;

@@ -77,6 +77,21 @@ float scene_dt(const scene *s);
 int scene_layer(scene *s, const char *name);
 const char *scene_layer_name(const scene *s, uint32_t layer); // "" when it has none
 
+// ---- feet on the ground ----
+// Each step, before the poses, a ray down finds the ground under each foot; the foot then stands as
+// high above it as the animation has it above the model's origin, and the root sinks as far as the
+// lowest foot needs. Takes the animation's goals 0..count-1 for the feet and `count` for the root.
+typedef struct scene_feet_desc {
+    uint32_t bone[4]; // ends of limbs of two bones
+    uint32_t count;   // 1..4
+    uint32_t root;    // bone that carries the body: hips
+    float up, down;   // m above and below the entity in which ground counts, default 0.5
+    float speed;      // m/s at which a foot follows the ground, default 2
+    uint32_t layers;  // bit per layer that is ground, 0: all; the entity's own body is not
+} scene_feet_desc;
+// NULL: the animation has its feet to itself again.
+bool scene_set_feet(scene *s, scene_entity e, const scene_feet_desc *desc);
+
 // ---- models ----
 // Any other model file (.glb, .fbx, ...) is first converted into the user's cache by
 // libcorsac-convert.so, where that is installed.

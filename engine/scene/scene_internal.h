@@ -75,6 +75,21 @@ CORE_COLUMNS_DECLARE(scene_names, SCENE_NAME_COLUMNS)
     X(core_rng, sim, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(scene_clock, SCENE_CLOCK_COLUMNS)
 
+// Feet that stand on the ground: one row an entity (scene_feet.c).
+#define SCENE_MAX_FEET 4
+typedef struct scene_feet_set {
+    uint32_t bone[SCENE_MAX_FEET], count, root, layers;
+    float up, down, speed; // m, m, m/s
+} scene_feet_set;
+typedef struct scene_feet_now {
+    float offset[SCENE_MAX_FEET], lowered; // m, of each foot and of the root
+} scene_feet_now;
+#define SCENE_FEET_COLUMNS(X)                                                                      \
+    X(scene_entity, entity, CORE_COLUMN_STATE)                                                     \
+    X(scene_feet_set, how, CORE_COLUMN_STATE)                                                      \
+    X(scene_feet_now, now, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(scene_feet, SCENE_FEET_COLUMNS)
+
 typedef struct scene_kept_setting { // given before its room was made
     char room[16], name[48], value[64];
 } scene_kept_setting;
@@ -101,6 +116,8 @@ struct scene {
     scene_entities entity;
     scene_names name;
     scene_clock clock;
+    scene_feet feet;
+    bool stands; // some entity has, or had, feet
     core_rng view_rng;
     phys_world *phys;
     gfx_world *gfx;
@@ -162,6 +179,8 @@ void scene_audio_step(scene *s);
 void scene_emitters_step(scene *s);
 void scene_audio_leave(scene *s, uint32_t row);
 void scene_audio_destroy(scene *s);
+// scene_feet.c
+void scene_feet_step(scene *s); // between physics and poses
 // scene_model.c
 void scene_models_destroy(scene *s);
 typedef struct scene_model_view {

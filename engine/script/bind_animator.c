@@ -1,6 +1,7 @@
 // Methods of Animator: one animated skeleton.
 #include "script/bind_anim.h"
 #include "script/bind_body.h"
+#include "script/bind_region.h"
 #include "script/internal.h"
 
 static anim_world *world_of(script *s) { return scene_anim(s->scene); }
@@ -61,7 +62,7 @@ static int set_layer(script *s, lua_State *L, void *args) {
     return done(L, anim_instance_set_layer(world_of(s), a->self, (uint32_t)o->layer, &d));
 }
 
-#define GOALS "reach|look"
+#define GOALS "reach|look|shift|move"
 typedef struct goal_options {
     int64_t goal;
     int kind;
@@ -91,6 +92,44 @@ static int set_goal(script *s, lua_State *L, void *args) {
     d.weight = o->weight;
     d.keep_rotation = o->keep_rotation;
     return done(L, anim_instance_set_goal(w, a->self, (uint32_t)o->goal - 1, &d));
+}
+
+typedef struct feet_options {
+    int bones;
+    const char *root, *layer;
+    float up, down, speed;
+} feet_options;
+typedef struct feet_args {
+    core_handle self;
+    feet_options options;
+} feet_args;
+
+static uint32_t named_bone(script *s, lua_State *L, core_handle animator, const char *name) {
+    anim_world *w = world_of(s);
+    int32_t bone = anim_skeleton_find(w, anim_instance_skeleton(w, animator), name ? name : "");
+    if (bone < 0) {
+        bind_error(L, "Animator:setFeet: its skeleton has no bone \"%s\"", name ? name : "");
+    }
+    return (uint32_t)bone;
+}
+
+static int set_feet(script *s, lua_State *L, void *args) {
+    const feet_args *a = args;
+    const feet_options *o = &a->options;
+    scene_entity entity = scene_entity_of_anim(s->scene, a->self);
+    scene_feet_desc d = {.up = o->up, .down = o->down, .speed = o->speed};
+    for (uint32_t i = 0; i < lua_objlen(L, o->bones); i++) {
+        if (i == CORE_COUNT_OF(d.bone)) {
+            bind_error(L, "Animator:setFeet: bones: at most %zu", CORE_COUNT_OF(d.bone));
+        }
+        lua_rawgeti(L, o->bones, (int)i + 1);
+        bool text = lua_type(L, -1) == LUA_TSTRING;
+        d.bone[d.count++] = named_bone(s, L, a->self, text ? lua_tostring(L, -1) : NULL);
+        lua_pop(L, 1);
+    }
+    d.root = named_bone(s, L, a->self, o->root);
+    d.layers = o->layer ? 1u << bind_layer(s, L, o->layer) : 0;
+    return done(L, scene_set_feet(s->scene, entity, d.count ? &d : NULL));
 }
 
 typedef struct weight_args {
@@ -280,11 +319,32 @@ static const bind_arg goal_fields[] = {
      "reach: the tip stays turned as it was", .optional = true},
     {0}};
 
+static const bind_arg feet_fields[] = {
+    {"bones", BIND_TABLE, BIND_AT(feet_options, bones),
+     "names of up to four ends of limbs; none: the animation has its feet to itself again"},
+    {"root", BIND_STRING, BIND_AT(feet_options, root), "bone that carries the body: hips"},
+    {"up", BIND_FLOAT, BIND_AT(feet_options, up), "above the entity, in which ground counts", "m",
+     BIND_POSITIVE, .optional = true, .def = 0.5},
+    {"down", BIND_FLOAT, BIND_AT(feet_options, down), "and below", "m", BIND_POSITIVE,
+     .optional = true, .def = 0.5},
+    {"speed", BIND_FLOAT, BIND_AT(feet_options, speed), "at which a foot follows the ground", "m/s",
+     BIND_POSITIVE, .optional = true, .def = 2},
+    {"layer", BIND_STRING, BIND_AT(feet_options, layer), "bodies that are ground", .optional = true,
+     .def_text = "all"},
+    {0}};
+
 const bind_fn bind_animator_methods[] = {
     {"setGoal", "Bends the finished pose: a limb reaches a point, or a bone looks at one.",
      BIND_ARGS(
          {"options", BIND_OPTIONS, BIND_AT(goal_args, options), "the goal", .fields = goal_fields}),
      NULL, sizeof(goal_args), BIND_SIM, .mod = true, .cost = 20, .run = set_goal},
+    {"setFeet",
+     "Feet stand on the ground under them, found by rays, as high as the animation has them; the "
+     "root sinks "
+     "as far as the lowest needs. Takes a goal for each foot from 1 on, and one for the root.",
+     BIND_ARGS(
+         {"options", BIND_OPTIONS, BIND_AT(feet_args, options), "the feet", .fields = feet_fields}),
+     NULL, sizeof(feet_args), BIND_SIM, .mod = true, .cost = 100, .run = set_feet},
     {"setLayer", "Plays a clip or machine over the base, on all or some bones.",
      BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(layer_args, options), "the layer",
                 .fields = layer_fields}),

@@ -583,7 +583,7 @@ local Animator = {}
 
 ---@class Animator.setGoal.options
 ---@field goal? integer its number; goals are applied in order
----@field kind? "reach"|"look" reach: the bone and two above it are a limb; look: the bone turns
+---@field kind? "reach"|"look"|"shift"|"move" reach: the bone and two above it are a limb; look: the bone turns
 ---@field bone string tip of the limb, or what looks
 ---@field target? number[] in the model's frame, m
 ---@field pole? number[] reach: where the middle joint points
@@ -595,6 +595,18 @@ local Animator = {}
 ---Bends the finished pose: a limb reaches a point, or a bone looks at one.
 ---@param options Animator.setGoal.options the goal
 function Animator:setGoal(options) end
+
+---@class Animator.setFeet.options
+---@field bones table names of up to four ends of limbs; none: the animation has its feet to itself again
+---@field root string bone that carries the body: hips
+---@field up? number above the entity, in which ground counts, m
+---@field down? number and below, m
+---@field speed? number at which a foot follows the ground, m/s
+---@field layer? string bodies that are ground
+
+---Feet stand on the ground under them, found by rays, as high as the animation has them; the root sinks as far as the lowest needs. Takes a goal for each foot from 1 on, and one for the root.
+---@param options Animator.setFeet.options the feet
+function Animator:setFeet(options) end
 
 ---@class Animator.setLayer.options
 ---@field layer? integer 1 is the lowest above the base
