@@ -302,8 +302,10 @@ static const bind_arg goal_fields[] = {
     {"goal", BIND_INT, BIND_AT(goal_options, goal), "its number; goals are applied in order", NULL,
      BIND_BETWEEN, .min = 1, .max = ANIM_MAX_GOALS, .optional = true, .def = 1},
     {"kind", BIND_ENUM, BIND_AT(goal_options, kind),
-     "reach: the bone and two above it are a limb; look: the bone turns", .optional = true,
-     .values = GOALS},
+     "reach: the bone and two above it are a limb; look: the bone turns; shift: a limb whose tip "
+     "goes "
+     "by the target from where the animation has it; move: the bone moves by the target",
+     .optional = true, .values = GOALS},
     {"bone", BIND_STRING, BIND_AT(goal_options, bone), "tip of the limb, or what looks"},
     {"target", BIND_VEC3, BIND_AT(goal_options, target), "in the model's frame", "m",
      .optional = true},

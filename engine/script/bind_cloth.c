@@ -4,6 +4,7 @@
 #include "script/bind_body.h"
 #include "script/bind_region.h"
 #include "script/internal.h"
+#include "script/mod.h"
 
 typedef struct cloth_options { // a rope has count, from and to
     int64_t columns, rows, substeps;
@@ -42,6 +43,7 @@ static int make(script *s, lua_State *L, const cloth_options *o, int64_t columns
     d.tear_force = o->tear_force;
     d.substeps = (uint32_t)o->substeps;
     d.layer = o->layer ? bind_layer(s, L, o->layer) : 0;
+    script_mod_size(s, L, "particles of cloth", (double)columns * (double)rows, 1024);
     phys_cloth cloth = phys_cloth_create(scene_phys(s->scene), &d);
     if (core_handle_is_null(cloth)) {
         bind_fail(L);

@@ -2,6 +2,7 @@
 #include "script/bind_body.h"
 #include "script/bind_gfx.h"
 #include "script/internal.h"
+#include "script/mod.h"
 
 #include <string.h>
 
@@ -63,6 +64,8 @@ static int new_emitter(script *s, lua_State *L, void *args) {
     d.burst = (uint32_t)o->burst, d.capacity = (uint32_t)o->capacity;
     d.seed = (uint64_t)o->seed;
     copy_range(L, "life", &o->life, d.life);
+    double alive = (double)d.burst + (double)d.rate * (double)d.life[1];
+    script_mod_size(s, L, "particles", alive > d.capacity ? alive : d.capacity, 4096);
     copy_range(L, "speed", &o->speed, d.speed);
     copy_range(L, "spin", &o->spin, d.spin);
     d.spread = o->spread, d.drag = o->drag;

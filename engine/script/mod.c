@@ -171,6 +171,16 @@ bool script_mod_callback(script_mod *m, uint32_t phase, int argc, int results) {
 
 // ---- the gate of its bindings ----
 
+void script_mod_size(script *s, lua_State *L, const char *what, double size, double most) {
+    if (!s->as_mod) {
+        return;
+    }
+    if (!(size <= most)) {
+        bind_error(L, "a mod asks for %.0f %s at once; at most %.0f", size, what, most);
+    }
+    script_guard_charge(&s->as_mod->guard, (int64_t)size * 4);
+}
+
 static bool makes_object(const bind_fn *fn) {
     return fn->returns && strncmp(fn->returns->type, "corsac.", 7) == 0 &&
            (strncmp(fn->name, "new", 3) == 0 || strcmp(fn->name, "spawn") == 0);
@@ -179,6 +189,7 @@ static bool makes_object(const bind_fn *fn) {
 static uint32_t quota_of(const char *type) {
     return strcmp(type, "Entity") == 0 || strcmp(type, "Body") == 0 ? 1000
            : strcmp(type, "Source") == 0                            ? 32
+           : strcmp(type, "Cloth") == 0                             ? 8
                                                                     : 64;
 }
 

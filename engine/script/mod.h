@@ -91,6 +91,9 @@ void script_mod_made(script *s, lua_State *L, const bind_fn *fn);
 // Before a mod adds to a machine of so many states and transitions: raises a Lua error over its
 // quota, else notes how the machine was, should the call fail.
 void script_mod_extends(script *s, lua_State *L, const mod_extended *before, uint32_t parts);
+// Before a function does work, or makes an object that does, in proportion to `size`: raises a Lua
+// error above what mods may ask for, else charges. Does nothing for the game itself.
+void script_mod_size(script *s, lua_State *L, const char *what, double size, double most);
 // An error text of a mod that did not end its call (top of the stack, popped).
 void script_mod_report(script *s, lua_State *L);
 

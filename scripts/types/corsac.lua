@@ -583,7 +583,7 @@ local Animator = {}
 
 ---@class Animator.setGoal.options
 ---@field goal? integer its number; goals are applied in order
----@field kind? "reach"|"look"|"shift"|"move" reach: the bone and two above it are a limb; look: the bone turns
+---@field kind? "reach"|"look"|"shift"|"move" reach: the bone and two above it are a limb; look: the bone turns; shift: a limb whose tip goes by the target from where the animation has it; move: the bone moves by the target
 ---@field bone string tip of the limb, or what looks
 ---@field target? number[] in the model's frame, m
 ---@field pole? number[] reach: where the middle joint points

@@ -263,6 +263,16 @@ static const attempt attempts[] = {
     {"raise an object", "error(corsac.scene.find('door'))"},
     {"error in tostring of the error",
      "error(setmetatable({}, {__tostring = function() while true do end end}))"},
+    {"cloth without end",
+     "corsac.phys.newCloth{columns = 4096, rows = 4096, across = {1, 0, 0}, down = {0, 0, 1}}"},
+    {"many cloths",
+     "for i = 1, 99 do corsac.phys.newCloth{columns = 30, rows = 30, across = {1, 0, 0}, "
+     "down = {0, 0, 1}} end"},
+    {"rope without end", "corsac.phys.newRope{count = 65536, from = {0, 0, 0}, to = {9, 0, 0}}"},
+    {"particles without end", "corsac.gfx.newEmitter{rate = 1e6, life = {9, 9}}"},
+    {"a crowd of particles", "corsac.gfx.newEmitter{capacity = 1048576}"},
+    {"machine without end",
+     "local m = corsac.scene.find('door') for i = 1, 999 do corsac.anim.newMachine{} end"},
     {"broken filter", "corsac.mod.filter('x', function() while true do end end) error('end')"},
 };
 
