@@ -71,6 +71,7 @@ typedef float gfx_glsl_vec4[4];
 #define GFX_U_FACE       1
 #define GFX_U_SIZE       2
 #define GFX_U_ROUGHNESS  3
+#define GFX_U_SAMPLES    4
 #define GFX_U_PARAMETERS 8 // of a script's shader: four vec4, up to 11
 #define GFX_PARAMETERS   16
 
@@ -99,7 +100,7 @@ struct gfx_view_block {
     GFX_VEC4(depth_range);    // orthographic: near, far; z = virtual far (m)
     GFX_UVEC4(cluster_grid);  // cells x, y, z; 1 when slices are linear
     GFX_UVEC4(light_count);   // directional, point and spot, tone map, debug view
-    GFX_VEC4(lens);           // half extents of the view at depth 1
+    GFX_VEC4(lens);           // half extents of the view at depth 1; taps and bias of shadows
     GFX_VEC4(sky_zenith);     // rgb radiance; w: factor of the environment
     GFX_VEC4(sky_horizon);
     GFX_VEC4(sky_ground);

@@ -5,7 +5,6 @@ layout(std430, binding = GFX_SSBO_SHADOWS) readonly buffer ShadowBlock {
 layout(binding = GFX_TEX_SHADOW) uniform sampler2DArray u_shadow; // nearest, border at infinity
 
 #ifdef USE_SOFT_SHADOWS
-const int BLOCKER_TAPS = 16, FILTER_TAPS = 32;
 const float MAX_REACH = 24.0; // texels
 #endif
 
@@ -56,9 +55,10 @@ Receiver receiverOf(gfx_shadow_block v, Surface s, float texel) {
     vec3 n = s.flatNormal;
     vec3 side = normalize(abs(n.y) < 0.9 ? vec3(n.z, 0.0, -n.x) : vec3(0.0, -n.z, n.y));
     Receiver r;
-    r.at = shadowCoordinates(v, s.position);
-    vec3 a = shadowCoordinates(v, s.position + side * (8.0 * texel)) - r.at;
-    vec3 b = shadowCoordinates(v, s.position + cross(n, side) * (8.0 * texel)) - r.at;
+    vec3 at = s.position + n * (u_view.lens.w * texel);
+    r.at = shadowCoordinates(v, at);
+    vec3 a = shadowCoordinates(v, at + side * (8.0 * texel)) - r.at;
+    vec3 b = shadowCoordinates(v, at + cross(n, side) * (8.0 * texel)) - r.at;
     float area = a.x * b.y - a.y * b.x;
     r.slope = abs(area) > 1e-20
                   ? vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / area : vec2(0.0);
@@ -117,8 +117,9 @@ float penumbraWidth(gfx_shadow_block v, Receiver r, float texel, float turn) {
     // No blocker is farther away than the light, or than the map is deep.
     float widest = v.texel.w * (parallel ? receiver : 1.0) / texel;
     float search = clamp(widest, 1.0, MAX_REACH), sum = 0.0, blockers = 0.0;
-    for (int i = 0; i < BLOCKER_TAPS; ++i) {
-        vec2 centre = texelCentre(v, r.at.xy + diskPoint(i, BLOCKER_TAPS, turn) * search / v.texel.z);
+    int taps = int(u_view.lens.z) / 2;
+    for (int i = 0; i < taps; ++i) {
+        vec2 centre = texelCentre(v, r.at.xy + diskPoint(i, taps, turn) * search / v.texel.z);
         float z = storedDepth(v, centre);
         if (z > receiverDepth(r, centre) + r.grace) {
             sum += shadowDistance(v, z);
@@ -159,12 +160,13 @@ float shadowTerm(gfx_light_block light, Surface s, vec3 l) {
         if (width == 0.0) {
             return 1.0;
         }
+        int taps = int(u_view.lens.z);
         float sum = 0.0;
-        for (int i = 0; i < FILTER_TAPS; ++i) {
-            vec2 at = r.at.xy + diskPoint(i, FILTER_TAPS, turn) * width / v.texel.z;
+        for (int i = 0; i < taps; ++i) {
+            vec2 at = r.at.xy + diskPoint(i, taps, turn) * width / v.texel.z;
             sum += litTexel(v, r, texelCentre(v, at));
         }
-        return sum / float(FILTER_TAPS);
+        return sum / float(taps);
     }
 #endif
     return shadowTent(v, r);

@@ -43,7 +43,7 @@ typedef struct gfx_stats { // of the last frame
 gfx_stats gfx_world_stats(const gfx_world *world);
 // Settings by name, as --set gfx.NAME=VALUE reaches them. False + core_fail naming the nearest name
 // or the allowed values.
-//   render       auto (clustered from 4 point and spot lights on) | forward | clustered | none
+//   render       auto (clustered from 2 point and spot lights on) | forward | clustered | none
 //   clusters     cells as XxYxZ, each 1..64, default 16x9x24
 //   slices       exponential | linear
 //   first_slice  m, end of the first exponential slice, default 5; 0: none, all from near on
@@ -77,6 +77,11 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //   shadow_distance  m of view depth that a sun's cascades cover, default 80
 //   cascades     of a sun, 1..4, default 3
 //   upload_budget  MiB of images read in the background that go to the GPU a frame, default 4
+//   shadow_taps  texels that a soft shadow is filtered over, 2..256, default 32; half as many find
+//                what casts it
+//   shadow_bias  texels by which a receiver is lifted off its surface, -16..16, default 0: planes
+//                need none
+//   ibl_samples  of an environment's reflections, 1..4096, default 128
 //   debug        off | normals | depth | lights (in each cell: blue none, red 32) | clusters |
 //                overdraw
 //   prepass      on | off: depth first, so that no hidden fragment is shaded

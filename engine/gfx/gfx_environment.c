@@ -96,7 +96,7 @@ static bool make_source(gfx_device *d, const gfx_world *world) {
     return true;
 }
 
-static bool make_filtered(gfx_device *d) {
+static bool make_filtered(gfx_device *d, int samples) {
     GLuint program = gfx_shaders_get(&d->shaders, "fullscreen.vert", "prefilter.frag", 0);
     if (!program) {
         return false;
@@ -104,6 +104,7 @@ static bool make_filtered(gfx_device *d) {
     d->environment.filtered = cube(GFX_ENVIRONMENT_SIZE, GFX_ENVIRONMENT_LEVELS);
     glUseProgram(program);
     glBindTextureUnit(GFX_TEX_ENVIRONMENT, d->environment.source);
+    glUniform1i(GFX_U_SAMPLES, samples);
     for (int level = 0; level < GFX_ENVIRONMENT_LEVELS; ++level) {
         float roughness = (float)level / (GFX_ENVIRONMENT_LEVELS - 1);
         glUniform1f(GFX_U_ROUGHNESS, CORE_MAX(roughness, 0.02f));
@@ -185,6 +186,7 @@ static uint64_t key_of(const gfx_world *world) {
     h = core_hash(e->glow, sizeof e->glow, h);
     h = core_hash(&e->sun, sizeof e->sun, h);
     h = core_hash(&e->intensity, sizeof e->intensity, h);
+    h = core_hash_mix(h, (uint64_t)world->settings.ibl_samples);
     return core_hash(&e->glow_exponent, sizeof e->glow_exponent, h) | 1;
 }
 
@@ -208,7 +210,7 @@ bool gfx_environment_update(gfx_device *d, const gfx_world *world) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
-    bool ok = make_source(d, world) && make_filtered(d);
+    bool ok = make_source(d, world) && make_filtered(d, (int)world->settings.ibl_samples);
     glDeleteBuffers(1, &block);
     if (ok) {
         make_harmonics(m);

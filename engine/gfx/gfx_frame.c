@@ -77,6 +77,7 @@ static void upload_view(gfx_device *d, const gfx_world *world, const gfx_view *v
     memcpy(b->view_proj, v->view_projection.m, sizeof b->view_proj);
     memcpy(b->view, v->view.m, sizeof b->view);
     b->lens[0] = v->tan_x, b->lens[1] = v->tan_y;
+    b->lens[2] = (float)(int)s->shadow_taps, b->lens[3] = s->shadow_bias;
     write_post(s, b);
     gfx_environment_write(d, world, b);
     gfx_stream_bind(&d->view_block, GL_UNIFORM_BUFFER, GFX_UBO_VIEW, sizeof *b, d->frame);

@@ -69,6 +69,41 @@ typedef struct cluster_run {
     core_jobs *jobs;
 } cluster_run;
 
+// What a fragment on the ground under the lights costs: references of its cell's list, and how many
+// of them are of lights that do not reach it.
+typedef struct list_use {
+    double refs, wasted;
+} list_use;
+
+static list_use use_of_lists(const cluster_run *r, const gfx_lights *l) {
+    core_rng rng = core_rng_make(4, CORE_RNG_ENGINE);
+    uint64_t refs = 0, wasted = 0, fragments = 0;
+    while (fragments < 20000) {
+        float u = core_rng_float(&rng), v = 0.5f * core_rng_float(&rng);
+        float fall = (1.0f - 2.0f * v) * r->grid.tan_y,
+              depth = eye.y / fall; // metres to the ground
+        float x = (2.0f * u - 1.0f) * r->grid.tan_x * depth;
+        if (!(depth <= r->grid.far) || core_absf(x) > 50.0f) {
+            continue;
+        }
+        uint32_t cell = gfx_cluster_cell(&r->grid, u, v, depth);
+        core_vec3 p = core_v3(eye.x + x, 0.0f, eye.z - depth);
+        for (uint32_t i = r->clusters.offset[cell]; i < r->clusters.offset[cell + 1]; ++i) {
+            uint32_t n = r->clusters.light[i];
+            core_vec3 d = core_v3_sub(p, core_v3(l->px[n], l->py[n], l->pz[n]));
+            refs++;
+            wasted += core_v3_dot(d, d) > l->radius[n] * l->radius[n];
+        }
+        fragments++;
+    }
+    return (list_use){(double)refs / (double)fragments, (double)wasted / (double)fragments};
+}
+
+static bool grid_of(const core_lab_case *c, gfx_world *world) {
+    return gfx_world_set(world, "clusters", core_lab_text(c, "grid", "16x9x24")) &&
+           gfx_world_set(world, "slices", core_lab_text(c, "slices", "exponential"));
+}
+
 static void assign(void *ctx) {
     cluster_run *r = ctx;
     gfx_clusters_assign(&r->clusters, &r->grid, &r->lights, r->method, r->jobs);
@@ -87,14 +122,15 @@ static bool run_cluster(const core_lab_case *c, core_json *out) {
     }
     gfx_world *world = lab_world(c);
     r.jobs = core_jobs_create((int)core_lab_number(c, "threads", 1));
-    if (!world || !r.jobs) {
+    if (!world || !r.jobs || !grid_of(c, world)) {
         return false;
     }
     gfx_view view;
     gfx_camera camera = gfx_world_camera(world);
     gfx_view_make(&camera, 16.0f / 9.0f, &view);
-    gfx_cluster_grid_make(&r.grid, world->settings.grid, false, world->settings.first_slice, false,
-                          view.tan_x, view.tan_y, view.near_plane, view.virtual_far);
+    gfx_cluster_grid_make(&r.grid, world->settings.grid, world->settings.linear_slices,
+                          world->settings.first_slice, false, view.tan_x, view.tan_y,
+                          view.near_plane, view.virtual_far);
     gfx_cluster_lights_fill(&r.lights, &world->lights, &view);
     assign(&r);
     core_json_int(out, "refs", r.clusters.total);
@@ -102,6 +138,14 @@ static bool run_cluster(const core_lab_case *c, core_json *out) {
         core_json_number(out, "cost_ns", core_lab_time(assign, &r, 5e7));
         core_json_number(out, "wall_ns", best_ns(core_clock_ns, assign, &r, 15));
     }
+    list_use use = use_of_lists(&r, &world->lights);
+    core_json_number(out, "refs_per_fragment", use.refs);
+    core_json_number(out, "wasted_per_fragment", use.wasted);
+    uint32_t cap = (uint32_t)core_lab_number(c, "cap", 0);
+    uint32_t cells = gfx_cluster_cells(&r.grid);
+    core_json_number(
+        out, "capped_share",
+        cap ? (double)gfx_clusters_cap(&r.clusters, cells, cap, GFX_CLUSTER_ALL) / cells : 0.0);
     gfx_clusters_release(&r.clusters);
     gfx_cluster_lights_release(&r.lights);
     core_jobs_destroy(r.jobs);
@@ -111,7 +155,9 @@ static bool run_cluster(const core_lab_case *c, core_json *out) {
 
 const core_lab_kernel gfx_lab_cluster = {
     "gfx.cluster", "light assignment: list entries, CPU and wall time of one assignment",
-    "method: naive|per_light|simd; n, radius, spots: part of n, threads, timed", run_cluster};
+    "method: naive|per_light|simd; n, radius, spots: part of n, grid: XxYxZ, slices: "
+    "exponential|linear, cap: of a list, threads, timed",
+    run_cluster};
 
 // ---- whole frames ----
 

@@ -3,8 +3,9 @@
 
 #include <string.h>
 
-// From this many point and spot lights on, `auto` draws clustered.
-enum { AUTO_CLUSTERED = 4 };
+// From this many point and spot lights on, `auto` draws clustered: where the frames of the lab's
+// gfx_auto cross.
+enum { AUTO_CLUSTERED = 2 };
 
 static void write_light(const gfx_device *d, const gfx_lights *l, uint32_t i,
                         struct gfx_light_block *out) {

@@ -114,6 +114,12 @@ class GfxScenes(SceneCase):
         values = {v for row in rows for v in row} - {255}
         self.assertLessEqual(max(values) - min(values), 1)
 
+    def test_without_egl_it_says_what_to_install(self):
+        for name in ("__EGL_VENDOR_LIBRARY_FILENAMES", "LIBGL_DRIVERS_PATH"):
+            done = corsac("run", SCENES / "lights.lua", *SMALL, "--steps", 1, "--shot", self.dir / "none.png",
+                          env={name: "/nonexistent"})
+            self.assert_exit(done, 5, "install libegl-mesa0")
+
     def test_same_bytes_over_runs_and_threads(self):
         pictures = set()
         for threads in ("0", "1", "2"):

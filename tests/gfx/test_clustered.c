@@ -194,6 +194,18 @@ static void test_moving_lights_cost_no_more(void) {
     gfx_fixture_close(&f);
 }
 
+// The fixed threshold of `auto`.
+static void test_auto(void) {
+    gfx_fixture f = open_scene(32, 18, 0, 5.0f);
+    for (uint32_t lights = 0; lights < 4; ++lights) {
+        TEST_ASSERT_TRUE(gfx_device_render(f.device, f.world));
+        uint32_t cells = gfx_world_stats(f.world).clusters;
+        TEST_ASSERT_EQUAL_UINT32(lights < 2 ? 0 : 16 * 9 * 24, cells);
+        gfx_add_point(f.world, core_v3((float)lights, 1, 0), 4, 2);
+    }
+    gfx_fixture_close(&f);
+}
+
 static void test_largest_difference(void) {
     accuracy_at_most("gfx: clustered against plain forward, largest difference", largest_difference,
                      0.0, "radiance");
@@ -228,6 +240,7 @@ int main(void) {
     RUN_TEST(test_views);
     RUN_TEST(test_camera_inside_lights);
     RUN_TEST(test_overflow_falls_back);
+    RUN_TEST(test_auto);
     RUN_TEST(test_largest_difference);
     RUN_TEST(test_very_many_lights);
     RUN_TEST(test_moving_lights_cost_no_more);
