@@ -149,12 +149,10 @@ typedef struct gfx_settings { // choices are ints: gfx_settings.c sets them by o
     int instancing, culling, prepass, levels; // switches
     int debug;                                // GFX_DEBUG_*
     int shadows;                              // GFX_SHADOWS_*
-    float shadow_size, shadow_distance, cascades;
-    float terrain_error; // pixels
-    int msaa, fxaa;      // msaa: samples are 1 << msaa
+    float terrain_error;                      // pixels
+    int msaa, fxaa;                           // msaa: samples are 1 << msaa
     float shadow_size, shadow_distance, cascades, shadow_taps, shadow_bias;
     float ibl_samples;
-    int msaa, fxaa; // msaa: samples are 1 << msaa
     float ao, ao_radius, ao_slices, ao_steps;
     float bloom, bloom_threshold, bloom_levels, bloom_spread;
     int auto_exposure;
