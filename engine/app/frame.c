@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/lab_ghost.h"
+#include "app/overlay.h"
 #include "core/file.h"
 
 bool app_device_open(app_run *r, bool window) {
@@ -48,7 +49,7 @@ bool app_frame(app_run *r, float alpha) {
     }
     if (r->overlay) {
         scene_counts(r->scene);
-        gfx_overlay(world, r->metrics);
+        app_overlay_draw(r);
     }
     r->report.frames++;
     bool ok = gfx_device_render(r->device, world);

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "app/lab_ghost.h"
+#include "app/overlay.h"
 #include "core/clock.h"
 #include "core/log.h"
 
@@ -121,6 +122,7 @@ static void step(app_run *r) {
     }
     core_metrics_step_end(r->metrics);
     script_end_step(r->script);
+    app_overlay_step(r);
     close_step(r, event, events, allocations);
     if (r->ghost) {
         app_ghost_step(r->ghost, event, events, core_clock_ns() - begin);
@@ -216,7 +218,7 @@ static void program_key(app_run *r, const gfx_event *e) {
         r->quit |= failed || !app_input_bound(&r->input, KEY_ESCAPE);
         break;
     case KEY_F1:
-        r->overlay = !r->overlay;
+        app_overlay_turn(r);
         break;
     case KEY_F1 + 1:
         ask_for_ghost(r);
@@ -238,6 +240,9 @@ static void poll_window(app_run *r) {
     gfx_event e;
     while (gfx_device_poll(r->device, &e)) {
         program_key(r, &e);
+        if (app_overlay_event(r, &e)) {
+            continue;
+        }
         app_input_queue(&r->input, &e);
         if (r->paused && !r->replay) { // a pause menu must hear what the next step will record
             for (; r->heard < r->input.queued; r->heard++) {

@@ -1,6 +1,7 @@
 // `corsac run`: from the command line to the exit code.
 #include "app/run.h"
 #include "app/commands.h"
+#include "app/overlay.h"
 
 #include <signal.h>
 #include <string.h>
@@ -187,6 +188,7 @@ int app_run_destroy(app_run *r) {
     }
     app_replay_close(r->replay);
     core_log_remove_sink(on_log, &r->report);
+    app_overlay_destroy(r->overlay);
     core_metrics_destroy(r->metrics);
     core_jobs_destroy(r->jobs);
     core_vfs_destroy(r->vfs);

@@ -53,7 +53,8 @@ typedef struct app_run {
     uint32_t width, height;
     int expectations_missed;
     // asked for by keys or the script, done between steps
-    bool paused, single_step, overlay, quit, reload;
+    bool paused, single_step, quit, reload;
+    struct app_overlay *overlay; // F1, NULL: never shown
     float time_scale;
     int exit_code;
     char next_scene[256];    // "": stay

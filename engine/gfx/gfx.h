@@ -90,6 +90,11 @@ gfx_stats gfx_world_stats(const gfx_world *world);
 //   culling      on | off: skip what is outside the view
 //   instancing   on | off (off: one draw call per instance, the baseline of the draw counts)
 bool gfx_world_set(gfx_world *world, const char *name, const char *value);
+// For lists of settings: i < count gives the name, and the value as text. clusters is not listed.
+uint32_t gfx_world_setting_count(void);
+const char *gfx_world_setting(const gfx_world *world, uint32_t i, char *value, size_t size);
+// The next or former choice; a number goes up or down by a quarter, within its range.
+void gfx_world_nudge(gfx_world *world, uint32_t i, int direction);
 
 typedef enum gfx_light_type { GFX_POINT, GFX_SPOT, GFX_DIRECTIONAL } gfx_light_type;
 // A point or spot light of radiant intensity I gives the irradiance I / d^2 at distance d, times a
@@ -412,9 +417,6 @@ typedef struct gfx_text_box {
 } gfx_text_box;
 // What a text will take; needs no device.
 bool gfx_text_measure(gfx_world *world, const gfx_text_desc *desc, gfx_text_box *out);
-// Stage times of the last step as bars and the counts of the last frame as text, top left: an
-// overlay for people. metrics may be NULL (frame counts only).
-void gfx_overlay(gfx_world *world, const core_metrics *metrics);
 // Forgets the 2D commands of the last frame; called before a draw callback.
 void gfx_world_begin_frame(gfx_world *world);
 

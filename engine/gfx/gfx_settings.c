@@ -210,3 +210,42 @@ bool gfx_world_set(gfx_world *world, const char *name, const char *value) {
     return s->color ? set_color(name, value, s->least, s->most, field)
                     : set_number(name, value, s->least, s->most, field);
 }
+
+uint32_t gfx_world_setting_count(void) { return CORE_COUNT_OF(table); }
+
+const char *gfx_world_setting(const gfx_world *world, uint32_t i, char *value, size_t size) {
+    const setting *s = &table[i];
+    const void *field = (const char *)&world->settings + s->offset;
+    if (s->choice[0]) {
+        snprintf(value, size, "%s", s->choice[*(const int *)field]);
+    } else {
+        const float *x = field;
+        if (s->color) {
+            snprintf(value, size, "%g,%g,%g", (double)x[0], (double)x[1], (double)x[2]);
+        } else {
+            snprintf(value, size, "%g", (double)x[0]);
+        }
+    }
+    return s->name;
+}
+
+void gfx_world_nudge(gfx_world *world, uint32_t i, int direction) {
+    const setting *s = &table[i];
+    void *field = (char *)&world->settings + s->offset;
+    int choices = 0;
+    while (choices < (int)CORE_COUNT_OF(s->choice) && s->choice[choices]) {
+        choices++;
+    }
+    if (choices) {
+        int *choice = field;
+        *choice = (*choice + (direction > 0 ? 1 : choices - 1)) % choices;
+        return;
+    }
+    float *x = field;
+    for (int k = 0; k < (s->color ? 3 : 1); ++k) {
+        float least_step = 0.01f; // below it a factor gets nowhere
+        float wide = x[k] < 0.0f ? -x[k] : x[k];
+        float step = CORE_MAX(0.25f * wide, least_step);
+        x[k] = CORE_CLAMP(x[k] + (direction > 0 ? step : -step), s->least, s->most);
+    }
+}

@@ -99,6 +99,9 @@ void script_quit(script *s); // corsac.quit
 // leaves the old code in place. True: new code runs. For every frame of --watch.
 bool script_reload_changed(script *s);
 // Errors so far in this run; the last one's text with file:line, reason and traceback.
+// Runs a line of a console between two steps, where corsac.fixed may do what it does: an expression
+// or statements. out: the values or the error, cut to size. No error of it counts as the script's.
+bool script_console(script *s, const char *code, char *out, size_t size);
 int script_error_count(const script *s);
 const char *script_last_error(const script *s);
 // corsac.expect: evaluates registered checks. Returns how many fell short; each is logged.

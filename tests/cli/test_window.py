@@ -57,6 +57,23 @@ class Window(SceneCase):
             shots.append(path)
         self.assertGreater(png.compare(*shots), 0.02)
 
+    def test_overlay_pages(self):
+        """Stages, settings that change the picture, a console that runs Lua; a fourth F1 leaves nothing."""
+        def shot(keys, *args, steps=170):
+            path = self.dir / "page.png"
+            code, _, err = self.press(keys, SCENE, "--steps", steps, "--shot", path, *args)
+            self.assertEqual(code, 0, err)
+            return png.read(path), err
+        stages, settings = shot("key:F1")[0], shot("key:F1 key:F1 key:Right")[0]
+        self.assertNotEqual(stages, settings)
+        self.assertEqual(shot("key:F1 key:F1 key:F1 key:F1")[0], shot("wait:0.1")[0])
+        console, err = shot("key:F1 key:F1 key:F1 key:7 key:minus key:2 key:Return wait:0.4", steps=240)
+        self.assertNotEqual(console, settings)
+        self.assertRegex(err, r"> 7-2\n(.*\n)?5\n")
+        self.assertNotIn("heard text 7", err)
+        _, err = shot("key:F1 key:F1 key:F1 key:7 key:Return wait:0.4", "--record", self.dir / "run.rec", steps=240)
+        self.assertIn("the console is closed while a run is recorded", err)
+
     def test_pause_and_single_step(self):
         # Paused somewhere after step 20; two single steps later there are two steps more, and no others.
         code, _, err = self.press("saw:step=20. key:F4 wait:0.8 key:F3 wait:0.3 key:F3 wait:0.3 key:Escape",

@@ -659,6 +659,20 @@ static void test_settings_refuse_what_they_do_not_know(void) {
     TEST_ASSERT_NOT_NULL(strstr(core_last_error(), "did not run"));
 }
 
+// What the overlay lists and changes: every value can be set again, however often it is nudged.
+static void test_listed_settings_stay_in_range(void) {
+    uint32_t count = gfx_world_setting_count();
+    TEST_ASSERT_GREATER_THAN(35, count);
+    for (uint32_t i = 0; i < count; ++i) {
+        for (int k = 0; k < 120; ++k) {
+            char value[64];
+            gfx_world_nudge(f.world, i, k < 50 ? 1 : -1);
+            const char *name = gfx_world_setting(f.world, i, value, sizeof value);
+            TEST_ASSERT_TRUE_MESSAGE(gfx_world_set(f.world, name, value), core_last_error());
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_plane_does_not_occlude_itself);
@@ -677,6 +691,7 @@ int main(void) {
     RUN_TEST(test_passes_of_no_strength_change_nothing);
     RUN_TEST(test_a_frame_allocates_nothing);
     RUN_TEST(test_a_thousand_resizes_leak_nothing);
+    RUN_TEST(test_listed_settings_stay_in_range);
     RUN_TEST(test_settings_refuse_what_they_do_not_know);
     return UNITY_END();
 }
