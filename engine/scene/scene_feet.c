@@ -33,6 +33,10 @@ static void forget(scene *s, uint32_t i) {
     core_columns_remove(&s->feet.set, core_columns_handle(&s->feet.set, i), NULL, NULL);
 }
 
+static void make_feet(scene *s) {
+    s->stands = s->stands || scene_feet_init(&s->feet, "scene.feet", 1u << 16);
+}
+
 // Goals are set once with weight 1: what they cannot be is told now, not in a step.
 static bool check(scene *s, anim_instance instance, const scene_feet_desc *d) {
     if (d->count < 1 || d->count > SCENE_MAX_FEET || !(d->up >= 0) || !(d->down >= 0) ||
@@ -64,7 +68,7 @@ bool scene_set_feet(scene *s, scene_entity e, const scene_feet_desc *d) {
     if (!check(s, instance, d)) {
         return false;
     }
-    s->stands = s->stands || scene_feet_init(&s->feet, "scene.feet", 1u << 16);
+    make_feet(s);
     core_handle h = s->stands ? core_columns_add(&s->feet.set) : CORE_NULL_HANDLE;
     if (core_handle_is_null(h)) {
         return false;
@@ -143,4 +147,39 @@ void scene_feet_step(scene *s) {
         }
     }
     core_stage_end(s->metrics, CORE_STAGE_ANIM);
+}
+
+static bool stands_well(const scene *s, uint32_t i) {
+    const scene_feet_set *how = &s->feet.how[i];
+    bool good = how->count >= 1 && how->count <= SCENE_MAX_FEET && isfinite(how->up) &&
+                isfinite(how->down) && isfinite(how->speed) && isfinite(s->feet.now[i].lowered);
+    for (uint32_t k = 0; good && k < how->count; k++) {
+        good = isfinite(s->feet.now[i].offset[k]);
+    }
+    return good;
+}
+
+bool scene_feet_stream(scene *s, core_stream *stream) {
+    uint32_t stands = s->stands;
+    if (!core_stream_count(stream, "feet", &stands, 1)) {
+        return false;
+    }
+    if (!stands) { // a save from before the first feet
+        if (s->stands && !stream->writing) {
+            core_columns_release(&s->feet.set);
+            s->feet = (scene_feet){0};
+            s->stands = false;
+        }
+        return true;
+    }
+    make_feet(s);
+    if (!s->stands || !core_stream_columns(stream, &s->feet.set)) {
+        return false;
+    }
+    for (uint32_t i = 0; i < core_columns_count(&s->feet.set); i++) {
+        if (!stands_well(s, i)) {
+            return core_stream_fail(stream, "scene.feet", "row %u: feet that cannot be", i);
+        }
+    }
+    return true;
 }

@@ -181,6 +181,7 @@ void scene_audio_leave(scene *s, uint32_t row);
 void scene_audio_destroy(scene *s);
 // scene_feet.c
 void scene_feet_step(scene *s); // between physics and poses
+bool scene_feet_stream(scene *s, core_stream *stream);
 // scene_model.c
 void scene_models_destroy(scene *s);
 typedef struct scene_model_view {

@@ -61,6 +61,38 @@ class SceneSave(SceneCase):
             self.assertAlmostEqual(went_on["user"]["time"], later["user"]["time"], delta=1e-9)
             (self.dir / "player/slot.csave").unlink(missing_ok=True)
 
+    def test_feet_stand_where_they_stood(self):
+        text = """
+            local at, from = corsac.param("at", -1), corsac.param("from", -1)
+            function corsac.load()
+              for i = 0, 5 do
+                corsac.phys.newBody{ type = "static", shape = "box", size = { 2, 1, 0.2 },
+                  position = { 0, 0.03 * i - 0.58, 0.2 * i - 0.5 } }
+              end
+              local model = corsac.anim.loadModel("models/fox.cmodel")
+              fox = corsac.scene.spawn{ model = model, clip = model:getClip("walk") }
+            end
+            function corsac.fixed()
+              local step = corsac.getStep()
+              if step == 10 then
+                fox:getAnimator():setFeet{ bones = { "hind_paw_l", "front_paw_r" }, root = "hips" }
+              end
+              if step == at then corsac.scene.save("feet") end
+              if step == from then
+                from = -1
+                corsac.scene.load("feet")
+              end
+            end"""
+
+        def go(steps, *args):
+            done = self.run_scene(text, "--steps", steps, "--hash", "--quiet", *args, env=self.env)
+            self.assert_exit(done, 0)
+            return done.out
+        for at in (30, 5):  # before and after the feet were set
+            saved, later = go(at + 1, "--set", f"at={at}"), go(60)
+            self.assertEqual(go(20, "--set", "from=19"), saved)
+            self.assertEqual(go(20 + 59 - at, "--set", "from=19"), later)
+
     def test_the_picture_is_that_of_the_save(self):
         shots = [self.dir / "saved.png", self.dir / "loaded.png"]
         self.go(101, "--set", "at=99", "--size", "160x90", "--shot", shots[0])
