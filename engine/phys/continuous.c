@@ -248,7 +248,7 @@ void phys_continuous_end(phys_world *w, const core_quat *rotations, float dt) {
     uint32_t *row = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
     for (uint32_t i = 0; i < n; i++) {
         g.stop[i] = dt;
-        if (phys_mobile(&w->bodies, i) && went_far(&g, i)) {
+        if (phys_mobile(&w->bodies, i) && phys_meets_some(w, i) && went_far(&g, i)) {
             row[count++] = i;
         }
     }

@@ -93,6 +93,7 @@ static void nudge(void *ctx) {
 static void search(void *ctx) {
     broad_run *r = ctx;
     nudge(r);
+    phys_layers_update(r->world);
     r->world->broad->find(r->world);
 }
 

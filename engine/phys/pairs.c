@@ -39,6 +39,13 @@ static bool in_reach(const phys_shapes *s, uint32_t i, uint32_t j) {
     return balls ? balls_meet(s, i, j, s->radius[i] + s->radius[j]) : boxes_meet(s, i, j);
 }
 
+void phys_layers_update(phys_world *w) {
+    w->layers = 0;
+    for (uint32_t i = 0; i < core_columns_count(&w->bodies.set); i++) {
+        w->layers |= w->bodies.shape[i] != 0 ? 1u << w->bodies.layer[i] : 0;
+    }
+}
+
 bool phys_pair_wanted(const phys_world *w, uint32_t a, uint32_t b) {
     uint32_t ra = w->shapes.row[a], rb = w->shapes.row[b];
     const uint8_t *type = w->bodies.type, *layer = w->bodies.layer;

@@ -223,7 +223,7 @@ static void tree_find(phys_world *w) {
     phys_tree_update(w);
     w->pairs.count = 0;
     for (uint32_t i = 0; i < n; i++) {
-        if (!s->moved[i]) {
+        if (!s->moved[i] || !phys_meets_some(w, s->row[i])) {
             continue;
         }
         find_partners(w, &w->moving_tree, i, found, n);

@@ -326,6 +326,7 @@ bool phys_world_step(phys_world *w, float dt) {
     core_stage_begin(w->metrics, CORE_STAGE_PHYS_BROAD);
     phys_joints_list_pairs(w);
     phys_shapes_update_bounds(w, dt);
+    phys_layers_update(w);
     w->broad->find(w);
     phys_pairs_update(w);
     core_stage_end(w->metrics, CORE_STAGE_PHYS_BROAD);

@@ -334,6 +334,7 @@ struct phys_world {
     uint32_t stamp;                    // number of the broad phase, marks living pairs
     const phys_integrator *integrator; // of bodies that touch nothing; NULL: the solver's own
     bool sleep;
+    uint32_t layers;                     // bit per layer that some body with a shape is in
     uint32_t islands;                    // of the last step
     uint32_t level_islands[PHYS_LEVELS]; // awake ones
     uint32_t touching;                   // contacts of the last step
@@ -442,6 +443,11 @@ uint32_t phys_query_shapes(phys_world *world, const phys_box *box, uint32_t *out
                            uint32_t capacity);
 
 // pairs.c
+void phys_layers_update(phys_world *world);
+// Whether a body could touch anything that there is, by the rules of layers.
+static inline bool phys_meets_some(const phys_world *w, uint32_t row) {
+    return (w->rule[w->bodies.layer[row]] & w->layers) != 0;
+}
 void phys_pair_push(phys_pair_list *list, uint32_t a, uint32_t b);
 bool phys_pair_wanted(const phys_world *world, uint32_t shape_a, uint32_t shape_b);
 void phys_pairs_update(phys_world *world);

@@ -40,7 +40,9 @@ pe_world *pe_create(const pe_world_def *d) {
     wd.gravity = vec(d->gravity);
     wd.zero_gravity = d->gravity[0] == 0 && d->gravity[1] == 0 && d->gravity[2] == 0;
     wd.max_bodies = (uint32_t)d->max_bodies + 64;
+    const char *substeps = getenv("CORSAC_SUBSTEPS"); // settings between the presets
     wd.substeps = d->preset == PE_DEFAULT ? 0 : 8 << d->preset;
+    wd.substeps = substeps && *substeps ? atoi(substeps) : wd.substeps;
     p->w = phys_world_create(&wd);
     phys_world_set(p->w, "sleep", d->sleep ? "on" : "off");
     p->cap = d->max_bodies + 64;

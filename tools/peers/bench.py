@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Corsac beside other physics engines: the same scenes, one run, two tables.
 
-    tools/peers/bench.py [--quick] [--engines corsac,box3d,bullet,ode] [--out DIR]
+    tools/peers/bench.py [--quick | --front] [--engines corsac,box3d,bullet,ode] [--out DIR] [--publish]
 
 Scenes and measures are scenes.c's (S1 to S12); overlap, energy and gaps are computed from poses alone.
 With one thread the clock is process CPU time. Corsac runs with AVX2 forced; its default set is a bonus
-line. Ratios are against Box3D of the same run, or against the slowest peer where Box3D is missing.
+line. Ratios are against Box3D of the same run, or against the slowest peer where Box3D is missing. Then
+every engine at every setting of its own, time against error, as a chart (front.py).
 """
 
 import argparse
@@ -16,6 +17,8 @@ import statistics
 import subprocess
 import sys
 from pathlib import Path
+
+import front
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = ROOT / "tools/peers"
@@ -168,6 +171,8 @@ def error_table(runs, engines, rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="leave out the largest scenes, one repeat")
+    parser.add_argument("--front", action="store_true", help="only time against error")
+    parser.add_argument("--publish", action="store_true", help="put the chart into docs/charts")
     parser.add_argument("--engines", default="corsac,box3d,bullet,ode")
     parser.add_argument("--out", default=str(ROOT / "out"), type=Path)
     args = parser.parse_args()
@@ -182,11 +187,17 @@ def main():
     engines = list(programs)
     rows = [r for r in SPEED if not (args.quick and r[0].startswith(QUICK))]
     runs = Runs(programs, 1 if args.quick else 3)
-    speed = speed_table(runs, engines, rows)
-    errors = error_table(runs, [e for e in engines if e != "corsac auto"], ERROR)
     args.out.mkdir(parents=True, exist_ok=True)
-    (args.out / "peers.json").write_text(json.dumps({"speed": speed, "errors": errors}, indent=1) + "\n")
-    print(f"\nwritten to {args.out / 'peers.json'}")
+    once = [e for e in engines if e != "corsac auto"]
+    result = {}
+    if not args.front:
+        result = {"speed": speed_table(runs, engines, rows), "errors": error_table(runs, once, ERROR)}
+    if not args.quick:
+        chart = (ROOT / "docs/charts" if args.publish else args.out) / "peers_front.svg"
+        result["front"] = front.run(runs, once, chart)
+    name = "peers_front.json" if args.front else "peers.json"
+    (args.out / name).write_text(json.dumps(result, indent=1) + "\n")
+    print(f"\nwritten to {args.out / name}")
     return 0
 
 
