@@ -489,6 +489,51 @@ bool phys_joint_set_limits(phys_world *world, phys_joint joint, bool on, float l
 bool phys_joint_set_spring(phys_world *world, phys_joint joint, float hertz, float damping_ratio,
                            float rest);
 
+// ---- ragdolls ----
+// A body a bone and a joint to the bone above it, from plain data. A body's origin is its bone's
+// head and its rotation the bone's, so that poses pass both ways unchanged: hand over by `pose`
+// (model space placed in the world), read back by phys_body_position and _rotation.
+typedef struct phys_ragdoll_bone {
+    int32_t parent;       // an earlier bone; -1: none
+    uint32_t bone;        // the caller's own: number in the skeleton
+    core_vec3 head, tail; // rest pose, world (m), at least 1 mm apart
+    core_quat rotation;   // rest pose, world
+    float radius;         // of the capsule (m); 0: 0.15 of the length
+    float mass;           // kg; 0: of water
+    float cone;           // largest lean against the parent from the rest pose, (0, pi); 0: 0.8 rad
+    float twist;          // to either side; 0: 0.5 rad
+    bool hinge;           // turns about `axis` only, by lower..upper (rad) from the rest pose
+    core_vec3 axis;       // world, rest pose
+    float lower, upper;
+} phys_ragdoll_bone;
+typedef struct phys_ragdoll_pose { // of a bone's head, world
+    core_vec3 position, velocity, angular_velocity;
+    core_quat rotation;
+} phys_ragdoll_pose;
+typedef struct phys_ragdoll_desc {
+    const phys_ragdoll_bone *bones; // [bone_count]
+    uint32_t bone_count;            // 1..256
+    const phys_ragdoll_pose *pose;  // [bone_count] where it starts; NULL: at rest in the rest pose
+    uint32_t layer;
+    float friction;        // of its bodies, default 0.6
+    float linear_damping;  // 1/s, default 0.05
+    float angular_damping; // 1/s, default 1: joints of flesh
+    uint64_t user;
+    uint32_t cookie;
+} phys_ragdoll_desc;
+phys_ragdoll_desc phys_ragdoll_desc_default(void);
+// Writes bone_count bodies and joints (null for bones without a parent). False + core_fail for bad
+// input, nothing made then. They are bodies and joints like others: destroy the bodies to end it.
+bool phys_ragdoll_create(phys_world *world, const phys_ragdoll_desc *desc, phys_body *bodies,
+                         phys_joint *joints);
+// Bones of a skeleton in its bind pose, placed in the world, `mass` kg in all, shared by volume.
+// Bones shorter than `least` m are left to the one above. A tail is the mean of the children's
+// heads; one without children goes on like the bone above, half as long. Returns how many; at most
+// `capacity` are written.
+uint32_t phys_ragdoll_bones(const core_skeleton_data *skeleton, core_vec3 position,
+                            core_quat rotation, float scale, float mass, float least,
+                            phys_ragdoll_bone *out, uint32_t capacity);
+
 // The poses, for sync and columns(): arrays of phys_body_count rows, valid until the next create,
 // destroy or step. COM positions equal origins for single centred shapes; these are body origins.
 uint32_t phys_body_count(const phys_world *world);
