@@ -22,6 +22,7 @@
 #define FIRST_TOUCH_PASSES 6
 #define PUSH_MAX           3.0f // m/s
 #define TOP_TURN           0.1f // rad a step
+#define TOP_RATIO          4.0f // of the greatest moment of inertia to the least
 
 enum { GROUP_BALLS, GROUP_MANIFOLDS, GROUP_FIXED_BALLS, GROUP_FIXED_MANIFOLDS, GROUPS };
 
@@ -466,6 +467,12 @@ static bool is_top(const soft *s, uint32_t k) {
     const phys_bodies *b = &s->world->bodies;
     uint32_t i = s->body[k];
     core_vec3 w = phys_get3(b->wx, b->wy, b->wz, i);
+    // A rod that tumbles would turn a little momentum across it into a lot of spin about it.
+    float least = CORE_MIN(b->ix[i], CORE_MIN(b->iy[i], b->iz[i]));
+    float most = CORE_MAX(b->ix[i], CORE_MAX(b->iy[i], b->iz[i]));
+    if (most > TOP_RATIO * least) {
+        return false;
+    }
     bool held = b->touching[i] != 0 || (s->joints != NULL && s->joints->jointed[k]);
     return held && b->type[i] == PHYS_DYNAMIC && (b->flags[i] & PHYS_BODY_ISOTROPIC) == 0 &&
            (b->locks[i] & PHYS_LOCK_TURN) == 0 &&

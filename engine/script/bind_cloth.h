@@ -5,6 +5,7 @@
 #include "script/bind.h"
 
 extern const bind_fn bind_cloth_functions[];
+extern const bind_fn bind_ragdoll_functions[]; // bind_ragdoll.c
 extern const bind_type bind_cloth_type;
 
 #endif

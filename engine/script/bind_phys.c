@@ -670,6 +670,7 @@ static const bind_module modules[] = {
     {"corsac.phys", "", bind_joint_functions},
     {"corsac.phys", "", bind_mover_functions},
     {"corsac.phys", "", bind_cloth_functions},
+    {"corsac.phys", "", bind_ragdoll_functions},
     {0}};
 static const bind_type *const types[] = {&bind_body_type,
                                          &bind_trigger_type,
