@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Synthesises the game's sounds: scripts/game/sounds/*.wav, 16 bit, mono, 24 kHz (music: stereo, 12 kHz).
+"""Synthesises the game's sounds: scripts/game/sounds/*.wav, 16 bit, mono, 24 kHz, and music.ogg (by sox).
 
 Sines, plucked strings (Karplus, Strong 1983) and seeded noise; every one begins and ends at zero,
 loops hold whole periods or fade their end over their beginning.
@@ -10,6 +10,8 @@ import array
 import math
 import os
 import random
+import shutil
+import subprocess
 import sys
 import wave
 
@@ -155,7 +157,7 @@ def pluck(pitch, duration, seed, bright):
         out.append(line[k])
         line[k] = 0.4985 * (line[k] + line[(k + 1) % size])
     last = round(0.05 * RATE)
-    return [v * min(1.0, (len(out) - i) / last) for i, v in enumerate(out)]
+    return [v * min(1.0, i / 96, (len(out) - i) / last) for i, v in enumerate(out)]
 
 
 def music():
@@ -188,7 +190,7 @@ def music():
     for i, tone in enumerate(melody):
         if tone:
             put(bell(tone, 1.8, ((1, 0.5, 0.7), (2, 0.2, 0.4), (3, 0.06, 0.2))), 8 * bar + i * 2 * beat, 0.16, 0.4)
-    return left[::2], right[::2]  # nothing in it is above 4 kHz
+    return left, right
 
 
 def water():
@@ -219,11 +221,15 @@ def main():
         flat = [v for pair in zip(*samples) for v in pair] if stereo else samples
         peak = max(map(abs, flat))
         scale = min(1.0, 0.85 / peak) if not stereo else 0.8 / peak
-        with wave.open(os.path.join(folder, name + ".wav"), "wb") as out:
+        path = os.path.join(folder, name + ".wav")
+        with wave.open(path, "wb") as out:
             out.setnchannels(2 if stereo else 1)
             out.setsampwidth(2)
-            out.setframerate(RATE // 2 if stereo else RATE)
+            out.setframerate(RATE)
             out.writeframes(array.array("h", [round(32000 * round(v * scale, 6)) for v in flat]).tobytes())
+        if stereo and shutil.which("sox"):
+            subprocess.run(["sox", path, "-C", "3", path[:-4] + ".ogg"], check=True)
+            os.remove(path)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
-// RIFF WAVE files: PCM 8 to 32 bit and 32-bit float to 16-bit samples.
+// Sound files. Ogg Vorbis is in a file of its own; RIFF WAVE here: PCM 8 to 32 bit and 32-bit float
+// to 16-bit samples.
 #include "asset/asset.h"
 #include "asset/bytes.h"
+#include "asset/ogg_file.h"
 
 #include <string.h>
 
@@ -76,9 +78,12 @@ static core_sound_data *convert(const uint8_t *data, uint32_t size, const wav_fo
 
 core_sound_data *asset_sound_decode(const void *bytes, size_t size, const char *path) {
     asset_reader r = asset_reader_make(bytes, size, path);
+    if (size >= 4 && memcmp(bytes, "OggS", 4) == 0) {
+        return asset_ogg_decode(bytes, size, r.path);
+    }
     const uint8_t *head = asset_read_bytes(&r, 12);
     if (!head || memcmp(head, "RIFF", 4) != 0 || memcmp(head + 8, "WAVE", 4) != 0) {
-        core_fail("%s: not a WAV file: expected RIFF and WAVE at its start", r.path);
+        core_fail("%s: not a WAV or Ogg file: expected RIFF and WAVE or OggS at its start", r.path);
         return NULL;
     }
     wav_format format = {0};

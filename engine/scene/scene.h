@@ -108,7 +108,7 @@ anim_clip scene_model_clip(const scene *s, scene_model model, uint32_t i);
 anim_clip scene_model_find_clip(const scene *s, scene_model model, const char *name);
 
 // ---- sound ----
-// Reads a WAV file; the same path gives the same sound again. Null + core_fail.
+// Reads a WAV or Ogg Vorbis file; the same path gives the same sound again. Null + core_fail.
 audio_sound scene_sound_load(scene *s, const char *path);
 // The source follows the entity from now on (position, and velocity for Doppler), is destroyed with
 // it, and takes the place of the one it had.

@@ -299,7 +299,7 @@ static const bind_arg listener_fields[] = {
     {0}};
 
 static const bind_fn functions[] = {
-    {"newSound", "Reads a WAV file; the same path gives the same sound.",
+    {"newSound", "Reads a WAV or Ogg Vorbis file; the same path gives the same sound.",
      BIND_ARGS({"path", BIND_STRING, BIND_AT(path_args, path), "in the game's folder"}),
      BIND_RETURNS({"sound", "corsac.Sound", NULL}), sizeof(path_args), BIND_SIM, .mod = true,
      .cost = 20000, .run = new_sound},

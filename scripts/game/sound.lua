@@ -4,7 +4,7 @@ local sound = {}
 local loaded, music, night = {}, nil, nil
 
 local function get(name)
-  loaded[name] = loaded[name] or audio.newSound("sounds/" .. name .. ".wav")
+  loaded[name] = loaded[name] or audio.newSound("sounds/" .. name .. (name == "music" and ".ogg" or ".wav"))
   return loaded[name]
 end
 
