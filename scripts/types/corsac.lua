@@ -1866,6 +1866,32 @@ function corsac.phys.newCloth(options) end
 ---@return corsac.Cloth rope
 function corsac.phys.newRope(options) end
 
+---@class corsac.phys.newRagdoll.options.bones
+---@field parent? integer number of an earlier bone; without, a root
+---@field head number[] place of its joint, in the world, m
+---@field tail number[] its other end, m
+---@field rotation? number[]|corsac.AxisAngle of its body
+---@field radius? number of its capsule; 0: 0.15 of the length, m
+---@field mass? number 0: as of water, kg
+---@field cone? number largest lean against the parent, rad
+---@field twist? number to either side, rad
+---@field axis? number[] a hinge about this direction instead of cone and twist
+---@field lower? number of the hinge, from this pose, rad
+---@field upper? number of the hinge, from this pose, rad
+
+---@class corsac.phys.newRagdoll.options
+---@field bones corsac.phys.newRagdoll.options.bones[] parents before children
+---@field layer? string name of its collision layer
+---@field friction? number Coulomb's coefficient
+---@field linearDamping? number loss of velocity, 1/s
+---@field angularDamping? number loss of angular velocity, 1/s
+
+---Makes a body a bone, its origin at the bone's head, and the joints between: lists in the order of the bones, joints false for roots.
+---@param options corsac.phys.newRagdoll.options the ragdoll
+---@return corsac.Body[] bodies
+---@return (corsac.Joint|false)[] joints
+function corsac.phys.newRagdoll(options) end
+
 ---Camera, lights and what is drawn over the frame.
 corsac.gfx = {}
 
