@@ -169,7 +169,7 @@ struct gfx_material_block {
 };
 
 #define GFX_TERRAIN_LEVELS 16
-#define GFX_TERRAIN_TILE   16 // squares along an edge of a tile
+#define GFX_TERRAIN_TILE   8 // squares along an edge of a tile
 
 struct gfx_terrain_block {
     GFX_VEC4(origin); // of the first point, m; 1 with an image
