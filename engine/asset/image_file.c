@@ -8,6 +8,7 @@
 
 #define IMAGE_MAX_SIDE   16384
 #define IMAGE_MAX_PIXELS (1 << 27)
+#define HEIGHTS_MAX_SIDE 8193
 
 static bool check_size(const void *bytes, size_t size, const char *path) {
     int w = 0, h = 0, channels = 0;
@@ -56,4 +57,49 @@ core_image_data *asset_image_load(core_vfs *vfs, const char *path, core_image_fo
     core_image_data *image = bytes ? asset_image_decode(bytes, size, path, format) : NULL;
     core_free(bytes);
     return image;
+}
+
+// ---- heights ----
+
+core_heights_data *asset_heights_decode(const void *bytes, size_t size, const char *path, float low,
+                                        float high) {
+    const char *name = path ? path : "(memory)";
+    int w = 0, h = 0, channels = 0;
+    if (!check_size(bytes, size, name)) {
+        return NULL;
+    }
+    uint16_t *grey = stbi_load_16_from_memory(bytes, (int)size, &w, &h, &channels, 1);
+    if (!grey) {
+        core_fail("%s: image is corrupt: %s", name, stbi_failure_reason());
+        return NULL;
+    }
+    if (w < 2 || h < 2 || w > HEIGHTS_MAX_SIDE || h > HEIGHTS_MAX_SIDE) {
+        core_fail("%s: %d x %d pixels; expected 2 to %d heights a side", name, w, h,
+                  HEIGHTS_MAX_SIDE);
+        stbi_image_free(grey);
+        return NULL;
+    }
+    size_t count = (size_t)w * (size_t)h;
+    asset_block block = asset_block_make(asset_round(sizeof(core_heights_data)) +
+                                         asset_round(count * sizeof(float)));
+    core_heights_data *heights = asset_block_take(&block, sizeof *heights);
+    float *height = asset_block_take(&block, count * sizeof *height);
+    for (size_t i = 0; i < count; ++i) {
+        height[i] = low + (high - low) * ((float)grey[i] / 65535.0f);
+    }
+    stbi_image_free(grey);
+    *heights = (core_heights_data){.columns = (uint32_t)w,
+                                   .rows = (uint32_t)h,
+                                   .step_x = 1.0f,
+                                   .step_z = 1.0f,
+                                   .height = height};
+    return heights;
+}
+
+core_heights_data *asset_heights_load(core_vfs *vfs, const char *path, float low, float high) {
+    size_t size = 0;
+    void *bytes = core_vfs_read(vfs, path, &size);
+    core_heights_data *heights = bytes ? asset_heights_decode(bytes, size, path, low, high) : NULL;
+    core_free(bytes);
+    return heights;
 }

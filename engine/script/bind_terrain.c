@@ -1,4 +1,5 @@
 // corsac.gfx: terrain.
+#include "asset/asset.h"
 #include "script/bind_gfx.h"
 #include "script/internal.h"
 
@@ -119,7 +120,38 @@ static const bind_arg terrain_fields[] = {
      BIND_BETWEEN, .max = 1, .optional = true, .def = 0.9},
     {0}};
 
+typedef struct read_args {
+    const char *path;
+    double low, high;
+} read_args;
+static int read_heights(script *s, lua_State *L, void *args) {
+    const read_args *a = args;
+    core_heights_data *h =
+        asset_heights_load(scene_vfs(s->scene), a->path, (float)a->low, (float)a->high);
+    if (!h) {
+        bind_fail(L);
+    }
+    uint32_t count = h->columns * h->rows, columns = h->columns;
+    lua_createtable(L, (int)count, 0);
+    for (uint32_t i = 0; i < count; ++i) {
+        lua_pushnumber(L, (double)h->height[i]);
+        lua_rawseti(L, -2, (int)i + 1);
+    }
+    core_free(h);
+    lua_pushnumber(L, columns);
+    return 2;
+}
+
 static const bind_fn functions[] = {
+    {"readHeights",
+     "Heights from the grey of an image, of 8 or 16 bits, for newTerrain and for bodies: their "
+     "list "
+     "and how many are in a row.",
+     BIND_ARGS({"path", BIND_STRING, BIND_AT(read_args, path), "in the game's folder"},
+               {"low", BIND_NUMBER, BIND_AT(read_args, low), "of black", "m"},
+               {"high", BIND_NUMBER, BIND_AT(read_args, high), "of white", "m"}),
+     BIND_RETURNS({"heights", "number[]", "m"}, {"columns", "integer", NULL}), sizeof(read_args),
+     BIND_SIM, .run = read_heights},
     {"newTerrain",
      "Makes ground from a field of heights. It is drawn as finely as gfx.set(\"terrain_error\", "
      "pixels) asks for.",

@@ -2320,6 +2320,14 @@ function corsac.gfx.drawText(text, options) end
 ---Terrain.
 corsac.gfx = {}
 
+---Heights from the grey of an image, of 8 or 16 bits, for newTerrain and for bodies: their list and how many are in a row.
+---@param path string in the game's folder
+---@param low number of black
+---@param high number of white
+---@return number[] heights
+---@return integer columns
+function corsac.gfx.readHeights(path, low, high) end
+
 ---@class corsac.gfx.newTerrain.options
 ---@field heights number[] row by row along +Z, m
 ---@field columns integer heights in a row, along +X

@@ -331,8 +331,29 @@ static void test_image(void) {
     TEST_ASSERT_NULL(asset_image_decode("hello", 5, "i", CORE_IMAGE_RGBA8_SRGB));
 }
 
+// Grey TGA of 2 x 3 pixels, rows from the top.
+static void test_heights(void) {
+    const uint8_t tga[24] = {0, 0, 3, 0, 0, 0,  0, 0,   0,  0,   0, 0,
+                             2, 0, 3, 0, 8, 32, 0, 255, 51, 102, 0, 0};
+    core_heights_data *h = asset_heights_decode(tga, sizeof tga, "i", -5.0f, 10.0f);
+    TEST_ASSERT_NOT_NULL(h);
+    TEST_ASSERT_EQUAL_UINT32(2, h->columns);
+    TEST_ASSERT_EQUAL_UINT32(3, h->rows);
+    const float expected[6] = {-5, 10, -2, 1, -5, -5};
+    for (int i = 0; i < 6; ++i) {
+        TEST_ASSERT_FLOAT_WITHIN(1e-5f, expected[i], h->height[i]);
+    }
+    core_free(h);
+    TEST_ASSERT_NULL(asset_heights_decode("hello", 5, "i", 0, 1));
+    uint8_t thin[22];
+    memcpy(thin, tga, sizeof thin);
+    thin[12] = 1;
+    TEST_ASSERT_NULL(asset_heights_decode(thin, sizeof thin, "i", 0, 1)); // one column
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_heights);
     RUN_TEST(test_round_trips);
     RUN_TEST(test_truncated_files_are_refused);
     RUN_TEST(test_bit_flips_keep_the_rules);

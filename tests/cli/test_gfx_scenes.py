@@ -3,9 +3,12 @@
 As test_picture: 0.1 % of the pixels may differ by more than 5 of 255; GOLDEN=write keeps new ones.
 """
 
+import json
 import os
 import shutil
+import struct
 import unittest
+import zlib
 from pathlib import Path
 
 import png
@@ -60,6 +63,33 @@ class GfxScenes(SceneCase):
 
     def test_terrain(self):
         self.golden("terrain", "--set", "view=0.3", "--set", "points=257")
+
+    def test_heights_of_sixteen_bits(self):
+        """A height map whose steps eight bits could not hold, and what is no height map."""
+        def chunk(name, data):
+            return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+        grey = [0, 1, 257, 65535, 32768, 40000]
+        rows = b"".join(b"\0" + struct.pack(">3H", *grey[i:i + 3]) for i in (0, 3))
+        (self.dir / "hills.png").write_bytes(
+            b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 3, 2, 16, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+        done = self.run_scene("""
+          function corsac.load()
+            local heights, columns = corsac.gfx.readHeights("hills.png", 0, 65535)
+            corsac.metrics.set("columns", columns)
+            for i, y in ipairs(heights) do corsac.metrics.set("h" .. i, y) end
+            local t = corsac.gfx.newTerrain{ heights = heights, columns = columns }
+            corsac.metrics.set("at", t:getHeight(1, 1))
+          end""", "--steps", 1, "--metrics", "-")
+        self.assert_exit(done, 0)
+        user = json.loads(done.out)["user"]
+        self.assertEqual(user.pop("columns"), 3)
+        self.assertEqual(user.pop("at"), 32768)
+        for i, value in enumerate(grey, 1):
+            self.assertAlmostEqual(user[f"h{i}"], value, delta=0.01)
+        done = self.run_scene('function corsac.load() corsac.gfx.readHeights("conf.lua", 0, 1) end', "--steps", 1)
+        self.assert_exit(done, 1, "conf.lua")
 
     def test_text(self):
         self.golden("text", "--size", "960x540")

@@ -65,6 +65,7 @@ static const struct {
     {"View", "return corsac.gfx.newView{}"},
     {"Terrain", "return corsac.gfx.newTerrain{heights = {0, 0, 0, 0}, columns = 2}"},
     {"Emitter", "return corsac.gfx.newEmitter{}"},
+    {"Terrain", "return corsac.gfx.newTerrain{heights = {0, 0, 0, 0}, columns = 2}"},
     {"Sound", "return corsac.audio.newSound('beep.wav')"},
     {"Source", "return corsac.audio.newSource{sound = corsac.audio.newSound('beep.wav')}"},
 };
