@@ -2525,7 +2525,7 @@ function corsac.nav.loadSurface(path) end
 ---Sounds in space: sources, groups, a listener.
 corsac.audio = {}
 
----Reads a WAV file; the same path gives the same sound.
+---Reads a WAV or Ogg Vorbis file; the same path gives the same sound.
 ---@param path string in the game's folder
 ---@return corsac.Sound sound
 function corsac.audio.newSound(path) end
