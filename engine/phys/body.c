@@ -17,7 +17,7 @@ static bool check_vec(const char *field, core_vec3 v, float limit) {
                      (double)v.y, (double)v.z, (double)limit);
 }
 
-static bool check_desc(const phys_body_desc *d, const phys_shape_desc *shapes, uint32_t count) {
+bool phys_body_check(const phys_body_desc *d) {
     if (d->cookie != PHYS_BODY_COOKIE) {
         return core_fail("phys body: description was not made by phys_body_desc_default");
     }
@@ -48,6 +48,13 @@ static bool check_desc(const phys_body_desc *d, const phys_shape_desc *shapes, u
     }
     if (d->locks > 63) {
         return core_fail("phys body: locks is %u, expected PHYS_LOCK_ flags", d->locks);
+    }
+    return true;
+}
+
+static bool check_desc(const phys_body_desc *d, const phys_shape_desc *shapes, uint32_t count) {
+    if (!phys_body_check(d)) {
+        return false;
     }
     if (count == 0 || shapes == NULL) {
         return core_fail("phys body: no shapes given, expected at least one");

@@ -271,16 +271,19 @@ static float closing_speed(const phys_world *w, uint32_t a, uint32_t b, core_vec
     return CORE_MAX(core_v3_dot(dv, normal), 0.0f);
 }
 
+#define HIT_SPEED 1.0f // m/s
+
 static void contact_change(phys_world *w, bool touch, uint8_t *was, uint32_t sa, uint32_t sb,
                            core_vec3 normal, float speed) {
-    if (touch == (*was != 0)) {
+    bool before = *was != 0, hit = touch && before && speed > HIT_SPEED;
+    if (touch == before && !hit) {
         return;
     }
     *was = touch;
     if (!touch) {
         phys_events_contact_end(w, &w->events, sa, sb);
     } else if (wants_events(w, sa, sb)) {
-        phys_event e = contact_event(w, PHYS_CONTACT_BEGIN, sa, sb);
+        phys_event e = contact_event(w, hit ? PHYS_CONTACT_HIT : PHYS_CONTACT_BEGIN, sa, sb);
         e.normal = normal;
         e.speed = speed;
         phys_event_push(&w->events, &e);

@@ -16,12 +16,8 @@ static core_vec3 soup_at(const core_soup_data *s, uint32_t v) {
 
 static bool check_materials(const phys_shape_desc *d) {
     for (uint32_t i = 0; i < d->material_count; i++) {
-        phys_material m = d->materials[i];
-        if (!(m.friction >= 0.0f && m.friction <= 1e6f && m.restitution >= 0.0f &&
-              m.restitution <= 1.0f)) {
-            return core_fail("phys shape mesh: material %u has friction %g and restitution %g, "
-                             "expected 0 or more and 0..1",
-                             i, (double)m.friction, (double)m.restitution);
+        if (!phys_material_check("mesh", &d->materials[i])) {
+            return false;
         }
     }
     return true;

@@ -73,16 +73,15 @@ static void put_material(phys_world *w, uint32_t i, uint32_t row, const phys_mes
     if ((mesh->area == NULL && mesh->height == NULL) || area >= mesh->material_count) {
         return;
     }
-    float friction, restitution;
-    phys_mix_material(w->shapes.friction[sa], mesh->material[area].friction,
-                      w->shapes.restitution[sa], mesh->material[area].restitution, &friction,
-                      &restitution);
+    phys_material m =
+        phys_mix_materials(w, phys_shape_material(&w->shapes, sa), mesh->material[area]);
     if (w->mesh_pairs.ball[i]) {
-        w->balls.friction[row] = friction;
-        w->balls.restitution[row] = restitution;
+        w->balls.friction[row] = m.friction;
+        w->balls.restitution[row] = m.restitution;
+        w->balls.rolling[row] = m.rolling;
     } else {
-        w->contacts.friction[row] = friction;
-        w->contacts.restitution[row] = restitution;
+        w->contacts.friction[row] = m.friction;
+        w->contacts.restitution[row] = m.restitution;
     }
 }
 

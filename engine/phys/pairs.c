@@ -121,18 +121,6 @@ static bool is_ball(const phys_world *w, uint32_t shape) {
            w->bodies.shape[s->row[shape]] == phys_row_slot(&s->set, shape);
 }
 
-void phys_mix_material(float friction_a, float friction_b, float restitution_a, float restitution_b,
-                       float *friction, float *restitution) {
-    *friction = core_sqrtf(friction_a * friction_b);
-    *restitution = CORE_MAX(restitution_a, restitution_b);
-}
-
-static void mix_shapes(const phys_shapes *s, uint32_t a, uint32_t b, float *friction,
-                       float *restitution) {
-    phys_mix_material(s->friction[a], s->friction[b], s->restitution[a], s->restitution[b],
-                      friction, restitution);
-}
-
 uint32_t phys_ball_row_add(phys_world *w, uint32_t sa, uint32_t sb) {
     const phys_shapes *s = &w->shapes;
     uint32_t first = phys_slot_row(&s->set, sa), second = phys_slot_row(&s->set, sb);
@@ -145,9 +133,12 @@ uint32_t phys_ball_row_add(phys_world *w, uint32_t sa, uint32_t sb) {
     w->balls.b[i] = s->row[second];
     w->balls.sa[i] = sa;
     w->balls.sb[i] = sb;
-    w->balls.rolling[i] = CORE_MAX(s->rolling[first], s->rolling[second]);
     w->balls.stamp[i] = w->stamp;
-    mix_shapes(s, first, second, &w->balls.friction[i], &w->balls.restitution[i]);
+    phys_material m =
+        phys_mix_materials(w, phys_shape_material(s, first), phys_shape_material(s, second));
+    w->balls.friction[i] = m.friction;
+    w->balls.restitution[i] = m.restitution;
+    w->balls.rolling[i] = m.rolling;
     return h.index;
 }
 
@@ -161,7 +152,10 @@ uint32_t phys_contact_row_add(phys_world *w, uint32_t sa, uint32_t sb) {
     w->contacts.sa[i] = sa;
     w->contacts.sb[i] = sb;
     w->contacts.stamp[i] = w->stamp;
-    mix_shapes(s, first, second, &w->contacts.friction[i], &w->contacts.restitution[i]);
+    phys_material m =
+        phys_mix_materials(w, phys_shape_material(s, first), phys_shape_material(s, second));
+    w->contacts.friction[i] = m.friction;
+    w->contacts.restitution[i] = m.restitution;
     return h.index;
 }
 

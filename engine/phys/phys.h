@@ -53,7 +53,9 @@ bool phys_world_step(phys_world *world, float dt);
 void phys_world_set_gravity(phys_world *world, core_vec3 g);
 core_vec3 phys_world_gravity(const phys_world *world);
 // Settings by name ("solver", "broad", "substeps", "iterations", ...): what --set phys.NAME=VALUE
-// reaches. False + core_fail naming the nearest name or the allowed values.
+// reaches. "friction", "restitution": how two materials become one: product, geometric (the default
+// of friction), average, least, most (the default of restitution). False + core_fail naming the
+// nearest name or the allowed values.
 bool phys_world_set(phys_world *world, const char *name, const char *value);
 // NULL-terminated list of names for a method kind: "solver", "broad", "narrow", "integrator".
 const char *const *phys_method_names(const char *kind);
@@ -66,6 +68,7 @@ void phys_world_counts(const phys_world *world, core_metrics *metrics);
 typedef struct phys_material {
     float friction;    // >= 0
     float restitution; // [0, 1]
+    float rolling;     // of balls: rolling resistance over radius, >= 0
 } phys_material;
 
 enum { PHYS_HOLE = 255 }; // area of a cell of heights that is not there
@@ -145,6 +148,24 @@ bool phys_body_apply_force(phys_world *world, phys_body body, core_vec3 force); 
 bool phys_body_apply_impulse(phys_world *world, phys_body body, core_vec3 impulse,
                              core_vec3 at); // N s, world point
 
+bool phys_body_apply_torque(phys_world *world, phys_body body, core_vec3 torque); // N m, next step
+
+// What a body was made with and may change; read, edit, write. Ranges as in phys_body_desc.
+typedef struct phys_body_settings {
+    phys_body_type type; // read only
+    float linear_damping, angular_damping, gravity_scale;
+    uint32_t locks, layer;
+    bool contact_events;
+    uint32_t shape_count; // read only
+} phys_body_settings;
+bool phys_body_read(const phys_world *world, phys_body body, phys_body_settings *out);
+bool phys_body_write(phys_world *world, phys_body body, const phys_body_settings *in);
+// Of shape number `shape`, 0 .. shape_count - 1 in the order of creation; write: of all of them.
+// Contacts that exist take the new material at once; the surface of a mesh keeps its own.
+bool phys_body_shape(const phys_world *world, phys_body body, uint32_t shape, phys_shape_type *type,
+                     phys_material *material);
+bool phys_body_set_material(phys_world *world, phys_body body, const phys_material *material);
+
 // Layers: two layers collide unless a rule says otherwise. Symmetric; takes effect at the next
 // step. Names are kept by the caller. False + core_fail for layers above 31.
 bool phys_world_set_rule(phys_world *world, uint32_t layer_a, uint32_t layer_b, bool collide);
@@ -180,7 +201,8 @@ typedef enum phys_event_kind {
     PHYS_TRIGGER_EXIT,
     PHYS_CONTACT_BEGIN, // of bodies made with contact_events
     PHYS_CONTACT_END,
-    PHYS_JOINT_BREAK // the load was beyond break_force or break_torque; or a body was destroyed
+    PHYS_JOINT_BREAK, // the load was beyond break_force or break_torque; or a body was destroyed
+    PHYS_CONTACT_HIT  // struck again at more than 1 m/s while in touch; as BEGIN
 } phys_event_kind;
 typedef struct phys_event {
     phys_event_kind kind;

@@ -23,24 +23,28 @@ static bool check_size(const char *shape, const char *field, float value) {
                      (double)value);
 }
 
+bool phys_material_check(const char *name, const phys_material *m) {
+    if (!(m->friction >= 0.0f && m->friction <= 1e6f)) {
+        return core_fail("phys shape %s: friction is %g, expected 0 or more", name,
+                         (double)m->friction);
+    }
+    if (!(m->restitution >= 0.0f && m->restitution <= 1.0f)) {
+        return core_fail("phys shape %s: restitution is %g, expected 0..1", name,
+                         (double)m->restitution);
+    }
+    if (!(m->rolling >= 0.0f && m->rolling <= 1e3f)) {
+        return core_fail("phys shape %s: rolling is %g, expected 0 or more", name,
+                         (double)m->rolling);
+    }
+    return true;
+}
+
 static bool check_material(const phys_shape_desc *s, const char *name) {
     if (!(s->density >= 0.0f && s->density <= 1e9f)) {
         return core_fail("phys shape %s: density is %g, expected 0 (default) or up to 1e9 kg/m^3",
                          name, (double)s->density);
     }
-    if (!(s->friction >= 0.0f && s->friction <= 1e6f)) {
-        return core_fail("phys shape %s: friction is %g, expected 0 or more", name,
-                         (double)s->friction);
-    }
-    if (!(s->restitution >= 0.0f && s->restitution <= 1.0f)) {
-        return core_fail("phys shape %s: restitution is %g, expected 0..1", name,
-                         (double)s->restitution);
-    }
-    if (!(s->rolling >= 0.0f && s->rolling <= 1e3f)) {
-        return core_fail("phys shape %s: rolling is %g, expected 0 or more", name,
-                         (double)s->rolling);
-    }
-    return true;
+    return phys_material_check(name, &(phys_material){s->friction, s->restitution, s->rolling});
 }
 
 bool phys_shape_check(const phys_shape_desc *s, phys_body_type body) {

@@ -175,8 +175,15 @@ static bool set_int(const char *name, const char *value, int lo, int hi, int *ou
 }
 
 bool phys_world_set(phys_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"broad", "cloth",  "integrator", "iterations",
-                                        "sleep", "solver", "substeps"};
+    static const char *const names[] = {"broad",      "cloth",      "friction",
+                                        "integrator", "iterations", "restitution",
+                                        "sleep",      "solver",     "substeps"};
+    if (strcmp(name, "friction") == 0 || strcmp(name, "restitution") == 0) {
+        bool good =
+            phys_set_mixing(name, value, name[0] == 'f' ? &w->mix_friction : &w->mix_restitution);
+        phys_remix_contacts(w);
+        return good;
+    }
     if (strcmp(name, "cloth") == 0) {
         bool iterates = strcmp(value, "iterate") == 0;
         if (!iterates && strcmp(value, "direct") != 0) {

@@ -330,9 +330,10 @@ struct phys_world {
     bool pairs_stale; // layers or rules changed: every pair is to be asked again
     uint32_t *order;  // sweep order of shape rows, kept between steps
     uint32_t order_count, order_capacity;
-    core_arena scratch;                // of one step
-    uint32_t stamp;                    // number of the broad phase, marks living pairs
-    const phys_integrator *integrator; // of bodies that touch nothing; NULL: the solver's own
+    core_arena scratch;                    // of one step
+    uint32_t stamp;                        // number of the broad phase, marks living pairs
+    const phys_integrator *integrator;     // of bodies that touch nothing; NULL: the solver's own
+    uint8_t mix_friction, mix_restitution; // rules of material.c
     bool sleep;
     uint32_t layers;                     // bit per layer that some body with a shape is in
     uint32_t islands;                    // of the last step
@@ -404,6 +405,8 @@ void phys_world_restored(phys_world *world); // fills caches again, after column
 
 // shape.c
 bool phys_shape_check(const phys_shape_desc *shape, phys_body_type body);
+bool phys_material_check(const char *what, const phys_material *material);
+bool phys_body_check(const phys_body_desc *desc); // body.c: all but its shapes
 // hulls.c: number of the hull of a description's points, 0 + core_fail when they span none.
 uint32_t phys_hull_share(phys_world *world, const phys_shape_desc *shape);
 void phys_hull_leave(phys_world *world, uint32_t number);
@@ -442,6 +445,12 @@ void phys_trees_release(phys_world *world);
 uint32_t phys_query_shapes(phys_world *world, const phys_box *box, uint32_t *out,
                            uint32_t capacity);
 
+// material.c
+phys_material phys_shape_material(const phys_shapes *s, uint32_t shape_row);
+phys_material phys_mix_materials(const phys_world *world, phys_material a, phys_material b);
+void phys_remix_contacts(phys_world *world); // after a change of materials or rules
+bool phys_set_mixing(const char *name, const char *value, uint8_t *out);
+
 // pairs.c
 void phys_layers_update(phys_world *world);
 // Whether a body could touch anything that there is, by the rules of layers.
@@ -456,8 +465,6 @@ void phys_pairs_release(phys_world *world);
 void phys_pairs_rebuild_map(phys_world *world);
 uint32_t phys_ball_row_add(phys_world *world, uint32_t sa, uint32_t sb);    // slots of shapes, of
 uint32_t phys_contact_row_add(phys_world *world, uint32_t sa, uint32_t sb); // the new row
-void phys_mix_material(float friction_a, float friction_b, float restitution_a, float restitution_b,
-                       float *friction, float *restitution);
 
 // narrow.c: how a pair is seen now, which its last search is compared with.
 typedef struct phys_pair_view {

@@ -22,9 +22,9 @@ typedef struct bind_body_options {
     int type;
     core_vec3 velocity, angular_velocity;
     float linear_damping, angular_damping, gravity_scale;
-    const char *layer;              // NULL: "default"
-    const char *locks;              // NULL: none
-    int on_contact, on_contact_end; // stack indices, 0: none
+    const char *layer;                      // NULL: "default"
+    const char *locks;                      // NULL: none
+    int on_contact, on_contact_end, on_hit; // stack indices, 0: none
 } bind_body_options;
 
 extern const bind_arg bind_body_fields[];
@@ -39,6 +39,11 @@ uint32_t bind_body_read(script *s, lua_State *L, const char *owner,
 void bind_body_callbacks(script *s, lua_State *L, const bind_body_options *options, phys_body body);
 // Size that a built-in unit mesh takes to look like the body's first shape.
 core_vec3 bind_body_mesh_scale(const bind_body_options *options);
+
+// PHYS_LOCK_ flags of words, "x turnY"; NULL: 0. Raises a Lua error for others.
+uint32_t bind_locks(lua_State *L, const char *owner, const char *words);
+
+const char *bind_shape_name(phys_shape_type type);
 
 extern const bind_type bind_body_type, bind_entity_type;
 

@@ -1,5 +1,6 @@
 // corsac.phys: bodies.
 #include "script/bind_body.h"
+#include "script/bind_body_settings.h"
 #include "script/bind_cloth.h"
 #include "script/bind_joint.h"
 #include "script/bind_mover.h"
@@ -182,10 +183,16 @@ static const bind_arg shape_fields[] = {
          "x, y, z towards the other",                                                              \
          .optional = true,                                                                         \
          .def_text = "none"},                                                                      \
+        {"onContactEnd",                                                                           \
+         BIND_FUNCTION,                                                                            \
+         BIND_AT(bind_body_options, on_contact_end),                                               \
+         "called when it touches no longer: itself, the other body (nil when it was "              \
+         "destroyed)",                                                                             \
+         .optional = true,                                                                         \
+         .def_text = "none"},                                                                      \
     {                                                                                              \
-        "onContactEnd", BIND_FUNCTION, BIND_AT(bind_body_options, on_contact_end),                 \
-            "called when it touches no longer: itself, the other body (nil when it was "           \
-            "destroyed)",                                                                          \
+        "onHit", BIND_FUNCTION, BIND_AT(bind_body_options, on_hit),                                \
+            "called when it is struck again, at more than 1 m/s, while in touch: as onContact",    \
             .optional = true, .def_text = "none"                                                   \
     }
 
@@ -311,8 +318,9 @@ static phys_shape_desc read_shape(lua_State *L, const char *owner, const bind_sh
     return d;
 }
 
-// Words to PHYS_LOCK_ flags.
-static uint32_t read_locks(lua_State *L, const char *owner, const char *words) {
+const char *bind_shape_name(phys_shape_type type) { return shape_names[type]; }
+
+uint32_t bind_locks(lua_State *L, const char *owner, const char *words) {
     static const char *const names[] = {"x", "y", "z", "turnX", "turnY", "turnZ"};
     uint32_t locks = 0;
     for (const char *at = words; at != NULL && *(at += strspn(at, " ")) != '\0';) {
@@ -339,8 +347,8 @@ uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_b
     out->linear_damping = o->linear_damping;
     out->angular_damping = o->angular_damping;
     out->gravity_scale = o->gravity_scale;
-    out->contact_events = o->on_contact || o->on_contact_end;
-    out->locks = read_locks(L, owner, o->locks);
+    out->contact_events = o->on_contact || o->on_contact_end || o->on_hit;
+    out->locks = bind_locks(L, owner, o->locks);
     out->layer = o->layer ? bind_layer(s, L, o->layer) : 0;
     if (o->shapes.count == 0) {
         shapes[0] = read_shape(L, owner, &o->shape);
@@ -357,9 +365,9 @@ uint32_t bind_body_read(script *s, lua_State *L, const char *owner, const bind_b
 }
 
 void bind_body_callbacks(script *s, lua_State *L, const bind_body_options *o, phys_body body) {
-    if (o->on_contact || o->on_contact_end) {
+    if (o->on_contact || o->on_contact_end || o->on_hit) {
         script_keep_callbacks(s, L, SCRIPT_ON_CONTACT, body,
-                              (const int[]){o->on_contact, o->on_contact_end, 0});
+                              (const int[]){o->on_contact, o->on_contact_end, o->on_hit});
     }
 }
 
@@ -446,6 +454,7 @@ BODY_GETTER(get_position, phys_body_position)
 BODY_SETTER(set_velocity, phys_body_set_velocity)
 BODY_SETTER(set_angular_velocity, phys_body_set_angular_velocity)
 BODY_SETTER(apply_force, phys_body_apply_force)
+BODY_SETTER(apply_torque, phys_body_apply_torque)
 
 // A body that belongs to an entity is moved through it, so that interpolation starts anew.
 static bool set_position(script *s, core_handle self, double *v) {
@@ -556,6 +565,44 @@ static const bind_fn body_methods[] = {
                {"py", BIND_NUMBER, BIND_AT(impulse_args, py), "", "m", .optional = true},
                {"pz", BIND_NUMBER, BIND_AT(impulse_args, pz), "", "m", .optional = true}),
      NULL, sizeof(impulse_args), BIND_SIM, .mod = true, .cost = 8, .run = apply_impulse},
+    SETTER("applyTorque", "Turns it about its centre of mass during the next step.", "N m",
+           apply_torque),
+    {"getType", "How it moves: \"dynamic\", \"static\" or \"kinematic\".", NULL,
+     BIND_RETURNS({"type", "string", NULL}), sizeof(core_handle), BIND_RUNNING, .mod = true,
+     .cost = 4, .run = bind_body_get_type},
+    {"getShape", "Geometry of one of its shapes, as in newBody.",
+     BIND_ARGS({"number", BIND_INT, BIND_AT(bind_shape_args, number), "from 1", NULL, BIND_POSITIVE,
+                .optional = true, .def = 1}),
+     BIND_RETURNS({"shape", "string", NULL}), sizeof(bind_shape_args), BIND_RUNNING, .mod = true,
+     .cost = 4, .run = bind_body_get_shape},
+    {"getShapeCount", "How many shapes it has.", NULL, BIND_RETURNS({"count", "integer", NULL}),
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = bind_body_get_shape_count},
+    {"setDamping", "Sets the losses of its velocities.",
+     BIND_ARGS({"linear", BIND_NUMBER, .unit = "1/s"}, {"angular", BIND_NUMBER, .unit = "1/s"}),
+     .phases = BIND_SIM, .mod = true, .cost = 8, .numbers = bind_body_set_damping},
+    {"getDamping", "The losses of its velocities.", NULL,
+     BIND_RETURNS({"linear", "number", "1/s"}, {"angular", "number", "1/s"}),
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = bind_body_get_damping},
+    {"setGravityScale", "Sets the factor on gravity.",
+     BIND_ARGS({"factor", BIND_NUMBER, .unit = NULL}), .phases = BIND_SIM, .mod = true, .cost = 8,
+     .numbers = bind_body_set_gravity_scale},
+    {"getGravityScale", "The factor on gravity.", NULL, BIND_RETURNS({"factor", "number", NULL}),
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = bind_body_get_gravity_scale},
+    {"setLocks", "Sets the world axes along and about which it never moves.",
+     BIND_ARGS({"axes", BIND_STRING, BIND_AT(bind_locks_args, words),
+                "any of x y z turnX turnY turnZ, spaces between"}),
+     NULL, sizeof(bind_locks_args), BIND_SIM, .mod = true, .cost = 10, .run = bind_body_set_locks},
+    {"getLocks", "The axes along and about which it never moves, as in setLocks.", NULL,
+     BIND_RETURNS({"axes", "string", NULL}), sizeof(core_handle), BIND_RUNNING, .mod = true,
+     .cost = 4, .run = bind_body_get_locks},
+    {"setMaterial", "Sets the material of all its shapes.",
+     BIND_ARGS({"friction", BIND_NUMBER, .unit = NULL}, {"restitution", BIND_NUMBER, .unit = NULL},
+               {"rolling", BIND_NUMBER, .unit = NULL}),
+     .phases = BIND_SIM, .mod = true, .cost = 20, .numbers = bind_body_set_material},
+    {"getMaterial", "The material of its first shape.", NULL,
+     BIND_RETURNS({"friction", "number", NULL}, {"restitution", "number", NULL},
+                  {"rolling", "number", NULL}),
+     .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = bind_body_get_material},
     {"getMass", "Its mass; 0 for static bodies.", NULL, BIND_RETURNS({"mass", "number", "kg"}),
      .phases = BIND_RUNNING, .mod = true, .cost = 4, .numbers = get_mass},
     {"getEntity", "The entity it belongs to, or nil.", NULL,
@@ -669,6 +716,7 @@ static const bind_module modules[] = {
     {"corsac.phys", "", bind_ask_functions},
     {"corsac.phys", "", bind_joint_functions},
     {"corsac.phys", "", bind_mover_functions},
+    {"corsac.phys", "", bind_state_functions},
     {"corsac.phys", "", bind_cloth_functions},
     {"corsac.phys", "", bind_ragdoll_functions},
     {0}};

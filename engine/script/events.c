@@ -136,14 +136,15 @@ static bool on_trigger(script *s, const phys_event *e) {
 // `self` hears of `other`; the normal points from self to other.
 static bool on_contact(script *s, const phys_event *e, phys_body self, phys_body other,
                        float side) {
-    bool begin = e->kind == PHYS_CONTACT_BEGIN;
+    bool end = e->kind == PHYS_CONTACT_END;
+    int which = end ? 2 : e->kind == PHYS_CONTACT_HIT ? 3 : 1;
     if (!phys_body_alive(scene_phys(s->scene), self) ||
-        !push_function(s->L, SCRIPT_ON_CONTACT, self, begin ? 1 : 2)) {
+        !push_function(s->L, SCRIPT_ON_CONTACT, self, which)) {
         return true;
     }
     push_body_or_nil(s, self);
     push_body_or_nil(s, other);
-    if (!begin) {
+    if (end) {
         return call(s, 2);
     }
     lua_pushnumber(s->L, (double)e->speed);

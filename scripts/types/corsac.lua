@@ -172,6 +172,63 @@ function Body:applyForce(x, y, z) end
 ---@param pz? number
 function Body:applyImpulse(x, y, z, px, py, pz) end
 
+---Turns it about its centre of mass during the next step.
+---@param x number
+---@param y number
+---@param z number
+function Body:applyTorque(x, y, z) end
+
+---How it moves: "dynamic", "static" or "kinematic".
+---@return string type
+function Body:getType() end
+
+---Geometry of one of its shapes, as in newBody.
+---@param number? integer from 1
+---@return string shape
+function Body:getShape(number) end
+
+---How many shapes it has.
+---@return integer count
+function Body:getShapeCount() end
+
+---Sets the losses of its velocities.
+---@param linear number
+---@param angular number
+function Body:setDamping(linear, angular) end
+
+---The losses of its velocities.
+---@return number linear
+---@return number angular
+function Body:getDamping() end
+
+---Sets the factor on gravity.
+---@param factor number
+function Body:setGravityScale(factor) end
+
+---The factor on gravity.
+---@return number factor
+function Body:getGravityScale() end
+
+---Sets the world axes along and about which it never moves.
+---@param axes string any of x y z turnX turnY turnZ, spaces between
+function Body:setLocks(axes) end
+
+---The axes along and about which it never moves, as in setLocks.
+---@return string axes
+function Body:getLocks() end
+
+---Sets the material of all its shapes.
+---@param friction number
+---@param restitution number
+---@param rolling number
+function Body:setMaterial(friction, restitution, rolling) end
+
+---The material of its first shape.
+---@return number friction
+---@return number restitution
+---@return number rolling
+function Body:getMaterial() end
+
 ---Its mass; 0 for static bodies.
 ---@return number mass
 function Body:getMass() end
@@ -1509,6 +1566,7 @@ corsac.scene = {}
 ---@field layer? string name of its collision layer
 ---@field onContact? function called when it begins to touch: itself, the other body, speed of approach (m/s), normal x, y, z towards the other
 ---@field onContactEnd? function called when it touches no longer: itself, the other body (nil when it was destroyed)
+---@field onHit? function called when it is struck again, at more than 1 m/s, while in touch: as onContact
 
 ---@class corsac.scene.spawn.options
 ---@field position? number[] in its parent's frame, m
@@ -1626,6 +1684,7 @@ function corsac.phys.getGravity() end
 ---@field layer? string name of its collision layer
 ---@field onContact? function called when it begins to touch: itself, the other body, speed of approach (m/s), normal x, y, z towards the other
 ---@field onContactEnd? function called when it touches no longer: itself, the other body (nil when it was destroyed)
+---@field onHit? function called when it is struck again, at more than 1 m/s, while in touch: as onContact
 ---@field position? number[] origin, m
 ---@field rotation? number[]|corsac.AxisAngle
 
@@ -1820,6 +1879,14 @@ function corsac.phys.getJointCount() end
 ---@param options corsac.phys.newMover.options the mover
 ---@return corsac.Mover mover
 function corsac.phys.newMover(options) end
+
+---Where everything is and how it moves, as a string, for restoreState.
+---@return string state
+function corsac.phys.saveState() end
+
+---Goes back to a saved state; the world then goes on with the same bits. The bodies must be those of then.
+---@param state any from saveState
+function corsac.phys.restoreState(state) end
 
 ---@class corsac.phys.newCloth.options
 ---@field columns integer particles across

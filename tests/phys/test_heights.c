@@ -173,7 +173,7 @@ static void test_holes_let_through_and_materials_hold(void) {
     for (int z = 0; z < 8; z++) { // along the near border: ice
         memset(cells + z * (SIDE - 1), 1, SIDE - 1);
     }
-    phys_material material[2] = {{0.8f, 0}, {0, 0}};
+    phys_material material[2] = {{.friction = 0.8f}, {.friction = 0}};
     phys_shape_desc s = phys_shape_desc_default(PHYS_MESH);
     s.heights = &field;
     s.cells = cells;

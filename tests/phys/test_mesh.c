@@ -335,7 +335,7 @@ static void test_materials(void) {
         area[t] = place[3 * corner[3 * t]] < 0 ? 0 : 1;
     }
     soup.area = area;
-    static const phys_material material[] = {{0.0f, 0.0f}, {1.0f, 0.8f}};
+    static const phys_material material[] = {{.friction = 0}, {.friction = 1, .restitution = 0.8f}};
     phys_body_desc d = phys_body_desc_default();
     d.type = PHYS_STATIC;
     phys_shape_desc s = phys_shape_desc_default(PHYS_MESH);
