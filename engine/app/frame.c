@@ -56,6 +56,8 @@ bool app_frame(app_run *r, float alpha) {
     gfx_device_use use = gfx_device_used(r->device);
     r->report.passes = use.passes;
     r->report.shader_variants = use.shader_variants;
+    const gfx_pass_use *pass = gfx_device_passes(r->device, &r->report.pass_count);
+    memcpy(r->report.pass, pass, r->report.pass_count * sizeof *pass);
     return ok || app_fail(r, APP_EXIT_ENVIRONMENT);
 }
 

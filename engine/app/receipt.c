@@ -47,6 +47,17 @@ static void put_counts(const app_report *r, const char *room, FILE *out) {
     }
 }
 
+static void put_passes(const app_report *r, FILE *out) {
+    for (uint32_t i = 0; i < r->pass_count; i++) {
+        const gfx_pass_use *p = &r->pass[i];
+        fprintf(out, "  pass %-12s %6llu times", p->name, (unsigned long long)p->runs);
+        if (p->timed) {
+            fprintf(out, ", %8.3f ms of GPU each", p->gpu_ms / (double)p->timed);
+        }
+        fputc('\n', out);
+    }
+}
+
 void app_report_receipt(const app_report *r, FILE *out) {
     app_memory_line line[APP_MEMORY_LINES];
     app_memory_lines(r, line);
@@ -60,6 +71,7 @@ void app_report_receipt(const app_report *r, FILE *out) {
     }
     fprintf(out, "  frames %llu, passes %u, shader variants %u\n", (unsigned long long)r->frames,
             r->passes, r->shader_variants);
+    put_passes(r, out);
     fprintf(out, "error paid (worst of the run)\n");
     for (int i = 0; i < APP_ACCURACY_COUNT; i++) {
         if (app_accuracy_names[i].peak && !isnan(r->peak[i])) {

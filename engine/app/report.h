@@ -62,6 +62,8 @@ typedef struct app_report {
     app_text_list warnings, asserts;
     char device[128];                 // GL renderer, "" when none was made
     uint32_t passes, shader_variants; // of the last frame
+    gfx_pass_use pass[32];            // of all frames
+    uint32_t pass_count;
     FILE *csv;
 } app_report;
 

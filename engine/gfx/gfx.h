@@ -497,5 +497,13 @@ typedef struct gfx_device_use {
     size_t uploaded_bytes; // of images read in the background, last frame
 } gfx_device_use;
 gfx_device_use gfx_device_used(const gfx_device *device);
+// Passes by name that frames had since the device was made, in order of their first use.
+typedef struct gfx_pass_use {
+    const char *name;
+    uint64_t runs;
+    double gpu_ms; // of the first `timed` runs together; no software renderer is timed
+    uint64_t timed;
+} gfx_pass_use;
+const gfx_pass_use *gfx_device_passes(const gfx_device *device, uint32_t *count);
 
 #endif

@@ -118,6 +118,7 @@ void gfx_device_destroy(gfx_device *device) {
     glDeleteVertexArrays(1, &d->empty_vao);
     gfx_targets_release(&d->targets);
     gfx_views_release(d);
+    gfx_passes_release(d);
     gfx_growing *const arrays[] = {&d->places, &d->visible,  &d->keys,   &d->scratch,
                                    &d->rows,   &d->commands, &d->batches};
     for (size_t i = 0; i < CORE_COUNT_OF(arrays); ++i) {

@@ -319,6 +319,19 @@ gfx_targets *gfx_views_targets(gfx_device *device, const gfx_world *world, uint3
 void gfx_views_place(gfx_device *device, const gfx_world *world, uint32_t row);
 void gfx_views_release(gfx_device *device);
 
+// ---- names and times of passes (gfx_passes.c) ----
+
+enum { GFX_PASSES = 32 };
+typedef struct gfx_pass_turn { // passes of one turn of the streams
+    const char *name[GFX_PASSES];
+    GLuint query[GFX_PASSES + 1]; // when each began, and the end
+    uint32_t count;
+} gfx_pass_turn;
+void gfx_pass_begin(gfx_device *device, const char *name); // a literal; ends the one before
+void gfx_passes_begin_turn(gfx_device *device);
+void gfx_passes_end_turn(gfx_device *device);
+void gfx_passes_release(gfx_device *device);
+
 // ---- passes over the whole picture (gfx_post.c) ----
 
 bool gfx_post_ambient(gfx_device *device, const gfx_world *world, gfx_targets *t);
@@ -359,7 +372,10 @@ struct gfx_device {
     bool float_target, software, draw_parameters, background;
     char name[128];
     uint32_t gl_errors;
-    uint32_t passes;        // of the last frame
+    uint32_t passes; // of the last frame
+    gfx_pass_use pass[GFX_PASSES];
+    uint32_t pass_count;
+    gfx_pass_turn pass_turn[GFX_FRAMES];
     uint32_t width, height; // of the view that is drawn
     gfx_targets targets;
     gfx_growing extra; // gfx_extra_view, of the world's viewports

@@ -13,6 +13,7 @@ static void begin_turn(gfx_device *d) {
         glDeleteSync(d->fence[d->frame]);
         d->fence[d->frame] = NULL;
     }
+    gfx_passes_begin_turn(d);
 }
 
 // GPU time of the frame that used this turn before. Timer queries of software renderers are wrong
@@ -32,6 +33,7 @@ static void begin_timer(gfx_device *d) {
 }
 
 static void end_turn(gfx_device *d) {
+    gfx_passes_end_turn(d);
     if (d->timer[d->frame]) {
         glEndQuery(GL_TIME_ELAPSED);
     }
@@ -269,19 +271,32 @@ static bool pass_finish(frame *f) {
 
 // A view is drawn by these, in this order, each if it is wanted.
 static const struct {
+    const char *name;
     bool (*wanted)(const frame *f);
     bool (*draw)(frame *f);
 } passes[] = {
-    {always, pass_clear},          {wants_depth, pass_depth},   {wants_ambient, pass_ambient},
-    {always, pass_scene},          {wants_sky, pass_sky},       {wants_fog, pass_fog},
-    {wants_blended, pass_blended}, {wants_boards, pass_boards}, {wants_marks, pass_marks},
-    {wants_resolve, pass_resolve}, {always, pass_finish},
+    {"clear", always, pass_clear},
+    {"depth", wants_depth, pass_depth},
+    {"occlusion", wants_ambient, pass_ambient},
+    {"scene", always, pass_scene},
+    {"sky", wants_sky, pass_sky},
+    {"fog", wants_fog, pass_fog},
+    {"blended", wants_blended, pass_blended},
+    {"boards", wants_boards, pass_boards},
+    {"lines", wants_marks, pass_marks},
+    {"resolve", wants_resolve, pass_resolve},
+    {NULL, always, pass_finish}, // which names its own
 };
 
 static bool draw_passes(frame *f) {
     bool ok = true;
     for (size_t i = 0; i < CORE_COUNT_OF(passes) && ok; ++i) {
-        ok = !passes[i].wanted(f) || passes[i].draw(f);
+        if (passes[i].wanted(f)) {
+            if (passes[i].name) {
+                gfx_pass_begin(f->device, passes[i].name);
+            }
+            ok = passes[i].draw(f);
+        }
     }
     return ok;
 }
@@ -339,12 +354,23 @@ static bool draw_view(gfx_device *d, gfx_world *world, const gfx_camera *camera,
     core_stage_end(d->metrics, CORE_STAGE_GFX_CLUSTER);
     core_stage_begin(d->metrics, CORE_STAGE_GFX_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_MATERIALS, d->materials.buffer);
+    if (d->shadows.count) {
+        gfx_pass_begin(d, "shadows");
+    }
     ok = ok && gfx_shadows_draw(d, world) && gfx_environment_update(d, world);
     upload_view(d, world, &f.view, &f.lights);
     f.features = scene_features(&f);
     ok = ok && draw_passes(&f);
     core_stage_end(d->metrics, CORE_STAGE_GFX_DRAW);
     return ok;
+}
+
+static bool draw_screen(gfx_device *d, gfx_world *world) {
+    if (world->commands.count) {
+        gfx_pass_begin(d, "2d");
+    }
+    gfx_post_begin(d, &d->targets.picture);
+    return gfx_quads_draw(d, world);
 }
 
 // Each view has a turn of the streams of its own.
@@ -355,8 +381,7 @@ static bool draw_in_turn(gfx_device *d, gfx_world *world, const gfx_camera *came
     bool ok = draw_view(d, world, camera, targets);
     d->width = d->targets.width, d->height = d->targets.height;
     if (last) {
-        gfx_post_begin(d, &d->targets.picture);
-        ok = ok && gfx_quads_draw(d, world);
+        ok = ok && draw_screen(d, world);
     }
     end_turn(d);
     return ok;
@@ -391,8 +416,7 @@ static bool draw_views(gfx_device *d, gfx_world *world) {
     }
     begin_turn(d); // for what is drawn over all of them
     upload_screen(d);
-    gfx_post_begin(d, &d->targets.picture);
-    ok = ok && gfx_quads_draw(d, world);
+    ok = ok && draw_screen(d, world);
     end_turn(d);
     return ok;
 }

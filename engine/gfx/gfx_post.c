@@ -43,6 +43,7 @@ bool gfx_post_ambient(gfx_device *d, const gfx_world *world, gfx_targets *t) {
 static bool bloom(gfx_device *d, const gfx_world *world, gfx_targets *t) {
     uint32_t levels = 0;
     bool ok = true;
+    gfx_pass_begin(d, "bloom");
     for (; levels < GFX_BLOOM_LEVELS && t->bloom[levels].name && ok; ++levels) {
         const gfx_target *from = levels ? &t->bloom[levels - 1] : &t->hdr;
         gfx_post_begin(d, &t->bloom[levels]);
@@ -75,6 +76,7 @@ static bool expose(gfx_device *d, gfx_targets *t) {
         glClearNamedBufferData(t->exposure, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
     }
     d->passes++;
+    gfx_pass_begin(d, "exposure");
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GFX_SSBO_EXPOSURE, t->exposure);
     glBindTextureUnit(GFX_TEX_HDR, t->hdr.texture);
     glUseProgram(count);
@@ -119,6 +121,7 @@ static void run_effects(gfx_device *d, const gfx_world *world, const gfx_targets
             continue;
         }
         d->passes++;
+        gfx_pass_begin(d, "effects");
         gfx_post_begin(d, to);
         glBindTextureUnit(GFX_TEX_HDR, from->texture);
         glBindTextureUnit(GFX_TEX_DEPTH, t->depth);
@@ -152,12 +155,14 @@ bool gfx_post_finish(gfx_device *d, const gfx_world *world, gfx_targets *t) {
         return false;
     }
     bool fxaa = t->encoded.name != 0;
+    gfx_pass_begin(d, "tone map");
     gfx_post_begin(d, fxaa ? &t->encoded : &t->picture);
     glBindTextureUnit(GFX_TEX_HDR, t->hdr.texture);
     if (!gfx_post_fill(d, "tonemap.frag", features)) {
         return false;
     }
     if (fxaa) {
+        gfx_pass_begin(d, "fxaa");
         gfx_post_begin(d, &t->picture);
         glBindTextureUnit(GFX_TEX_HDR, t->encoded.texture);
         if (!gfx_post_fill(d, "fxaa.frag", 0)) {

@@ -556,6 +556,35 @@ static void set_all(bool on) {
     }
 }
 
+static uint64_t runs_of(const char *pass) {
+    uint32_t count;
+    const gfx_pass_use *use = gfx_device_passes(f.device, &count);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (strcmp(use[i].name, pass) == 0) {
+            return use[i].runs;
+        }
+    }
+    return 0;
+}
+
+static void test_passes_are_counted_by_name(void) {
+    static const char *const wished[] = {"occlusion", "bloom", "exposure", "fxaa", "fog"};
+    add_room();
+    render();
+    TEST_ASSERT_EQUAL_UINT64(1, runs_of("scene"));
+    for (size_t i = 0; i < CORE_COUNT_OF(wished); ++i) {
+        TEST_ASSERT_EQUAL_UINT64(0, runs_of(wished[i]));
+    }
+    set_all(true);
+    for (int i = 0; i < 5; ++i) {
+        render();
+    }
+    for (size_t i = 0; i < CORE_COUNT_OF(wished); ++i) {
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(5, runs_of(wished[i]), wished[i]);
+    }
+    TEST_ASSERT_EQUAL_UINT64(6, runs_of("scene"));
+}
+
 static void test_what_is_off_changes_and_costs_nothing(void) {
     add_room();
     gfx_look(f.world, core_v3(2.0f, 1.8f, 2.6f), core_v3(-0.5f, 0.5f, -0.4f));
@@ -687,6 +716,7 @@ int main(void) {
     RUN_TEST(test_correction_by_its_formula);
     RUN_TEST(test_samples_give_coverage);
     RUN_TEST(test_fxaa_changes_edges_alone);
+    RUN_TEST(test_passes_are_counted_by_name);
     RUN_TEST(test_what_is_off_changes_and_costs_nothing);
     RUN_TEST(test_passes_of_no_strength_change_nothing);
     RUN_TEST(test_a_frame_allocates_nothing);
