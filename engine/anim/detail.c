@@ -76,7 +76,8 @@ static void measure(anim_world *w, uint32_t row) {
     }
     uint32_t steps = w->pose_count - probe->measured;
     bool known = probe->measured > 0 && steps <= LONGEST;
-    float motion = known ? moved / (float)steps : INFINITY;
+    float bent = steps > 1 ? 1.5f : 1.0f; // between two poses the way was no straight line
+    float motion = known ? bent * moved / (float)steps : INFINITY;
     float before = w->instances.motion[row];
     float kept = isinf(before) ? 0 : before * (1 - CORE_MIN((float)steps / MEMORY, 1.0f));
     w->instances.motion[row] = CORE_MAX(motion, kept);
