@@ -35,7 +35,8 @@ void nav_world_destroy(nav_world *world);
 // Plans paths whose graph changed, then moves agents by dt seconds, finite, > 0, <= 1.
 bool nav_world_step(nav_world *world, float dt);
 // Settings: "heuristic" (euclid, octile, zero), "weight" (1..10), "avoidance" (orca, none),
-// "slice" (views that paths across surfaces may expand in a step, all together; 0: at once).
+// "bodies" (on, off: whether a scene makes moving bodies obstacles), "slice" (views that paths
+// across surfaces may expand in a step, all together; 0: at once).
 bool nav_world_set(nav_world *world, const char *name, const char *value);
 // NULL-terminated names of a method kind: "heuristic", "grid", "avoidance".
 const char *const *nav_method_names(const char *kind);
@@ -386,6 +387,15 @@ bool nav_agent_heading(const nav_world *world, nav_agent agent, float *out);
 bool nav_agent_set_max_speed(nav_world *world, nav_agent agent, float speed);
 // The link (of the surface of its path) on which it is now, NAV_NO_LINK on the ground.
 uint32_t nav_agent_link(const nav_world *world, nav_agent agent);
+// What agents go round beside each other: upright cylinders that move (bodies, the player). Copied,
+// kept until the next call. False + core_fail for numbers that are not finite and radii <= 0.
+typedef struct nav_obstacle {
+    core_vec3 position; // middle of its lower end
+    core_vec3 velocity; // m/s
+    float radius;       // m
+} nav_obstacle;
+bool nav_world_set_obstacles(nav_world *world, const nav_obstacle *obstacle, uint32_t count);
+bool nav_world_minds_bodies(const nav_world *world); // setting "bodies": for who sets obstacles
 // Its path, null when it never went anywhere.
 nav_path nav_agent_path(const nav_world *world, nav_agent agent);
 uint32_t nav_agent_count(const nav_world *world);

@@ -263,9 +263,10 @@ static void avoid_one(nav_world *w, uint32_t row, float dt) {
     }
     near_list list = {.count = 0};
     find_near(c, a, row, &list);
-    c->near_count[row] = list.count;
     for (uint32_t i = 0; i < list.count; i++) {
-        c->near[row * NEIGHBOURS + i] = c->row[list.slot[i]];
+        if (c->row[list.slot[i]] < c->agents) {
+            c->near[row * NEIGHBOURS + c->near_count[row]++] = c->row[list.slot[i]];
+        }
     }
     if (list.count == 0) {
         return;
@@ -277,11 +278,14 @@ static void avoid_one(nav_world *w, uint32_t row, float dt) {
         flat x = {c->px[k] - a->px[row], c->pz[k] - a->pz[row]};
         // Who has arrived makes room for where others want to go, though they cannot go there yet.
         bool yields = a->state[row] == NAV_AGENT_ARRIVED;
-        flat theirs = yields ? (flat){a->wx[other], a->wz[other]} : (flat){c->vx[k], c->vz[k]};
+        bool agent = other < c->agents;
+        flat theirs =
+            yields && agent ? (flat){a->wx[other], a->wz[other]} : (flat){c->vx[k], c->vz[k]};
         flat v = sub(now, theirs);
         half_plane *p = &plane[planes++];
         *p = plane_for(x, v, (1.0f + MARGIN) * (a->radius[row] + c->radius[k]), dt, row < other);
-        float share = stands(a, other) ? 1.0f : 0.5f; // who stands does not help
+        // Who stands does not help, nor does what is no agent.
+        float share = !agent || stands(a, other) ? 1.0f : 0.5f;
         p->point = mad(now, p->point, share);
     }
     flat aim = aside(a, row, want);
@@ -323,22 +327,39 @@ void nav_crowd_release(nav_crowd *c) {
     *c = (nav_crowd){0};
 }
 
-static void measure(nav_crowd *c, const nav_agents *a, uint32_t count) {
+static const nav_obstacle *obstacles(const nav_world *w) { return w->obstacles.data; }
+
+static void measure(nav_crowd *c, const nav_world *w) {
+    const nav_agents *a = &w->agent;
     float radius = 0.0f, speed = 0.0f;
-    for (uint32_t row = 0; row < count; row++) {
+    for (uint32_t row = 0; row < c->agents; row++) {
         radius = CORE_MAX(radius, a->radius[row]);
         speed = CORE_MAX(speed, a->max_speed[row]);
+    }
+    for (uint32_t i = 0; i < w->obstacle_count; i++) {
+        radius = CORE_MAX(radius, obstacles(w)[i].radius);
     }
     c->range = 2.0f * (radius + LOOK * speed);
     c->per_cell = 1.0f / c->range;
 }
 
-static void sort_by_cell(nav_crowd *c, const nav_agents *a, uint32_t count) {
+// Agents first, then obstacles, as if their rows went on.
+static nav_obstacle disc(const nav_crowd *c, const nav_world *w, uint32_t row) {
+    const nav_agents *a = &w->agent;
+    if (row >= c->agents) {
+        return obstacles(w)[row - c->agents];
+    }
+    return (nav_obstacle){
+        {a->px[row], a->py[row], a->pz[row]}, {a->vx[row], 0.0f, a->vz[row]}, a->radius[row]};
+}
+
+static void sort_by_cell(nav_crowd *c, const nav_world *w, uint32_t count) {
     for (uint32_t b = 0; b <= c->buckets; b++) {
         c->start[b] = 0;
     }
     for (uint32_t row = 0; row < count; row++) {
-        c->key[row] = bucket(c, cell_of(c, a->px[row]), cell_of(c, a->pz[row]));
+        nav_obstacle d = disc(c, w, row);
+        c->key[row] = bucket(c, cell_of(c, d.position.x), cell_of(c, d.position.z));
         c->start[c->key[row] + 1]++;
     }
     for (uint32_t b = 0; b < c->buckets; b++) {
@@ -347,10 +368,11 @@ static void sort_by_cell(nav_crowd *c, const nav_agents *a, uint32_t count) {
     for (uint32_t row = count; row-- > 0;) {
         // Filled from the end, so that start[b + 1] ends as the begin of bucket b.
         uint32_t i = --c->start[c->key[row] + 1];
+        nav_obstacle d = disc(c, w, row);
         c->row[i] = row;
-        c->px[i] = a->px[row], c->py[i] = a->py[row], c->pz[i] = a->pz[row];
-        c->vx[i] = a->vx[row], c->vz[i] = a->vz[row], c->radius[i] = a->radius[row];
-        c->cell_x[i] = cell_of(c, a->px[row]), c->cell_z[i] = cell_of(c, a->pz[row]);
+        c->px[i] = d.position.x, c->py[i] = d.position.y, c->pz[i] = d.position.z;
+        c->vx[i] = d.velocity.x, c->vz[i] = d.velocity.z, c->radius[i] = d.radius;
+        c->cell_x[i] = cell_of(c, d.position.x), c->cell_z[i] = cell_of(c, d.position.z);
     }
     for (uint32_t b = 0; b < c->buckets; b++) {
         c->start[b] = c->start[b + 1];
@@ -416,9 +438,10 @@ void nav_crowd_avoid(nav_world *w, float dt) {
     if (count == 0) {
         return;
     }
-    fit(&w->crowd, count);
-    measure(&w->crowd, &w->agent, count);
-    sort_by_cell(&w->crowd, &w->agent, count);
+    fit(&w->crowd, count + w->obstacle_count);
+    w->crowd.agents = count;
+    measure(&w->crowd, w);
+    sort_by_cell(&w->crowd, w, count + w->obstacle_count);
     avoid_job job = {w, dt};
     core_jobs_for(w->jobs, count, 128, avoid_some, &job);
 }

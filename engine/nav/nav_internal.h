@@ -148,6 +148,7 @@ typedef struct nav_crowd {
     uint32_t *near_count, *near; // [row], [row*10] neighbours in this step
     uint32_t *start;             // [buckets + 1]
     uint32_t capacity, buckets;
+    uint32_t agents;       // rows from there on are obstacles
     float range, per_cell; // m within which neighbours count; cells per m
 } nav_crowd;
 
@@ -237,7 +238,9 @@ struct nav_world {
     nav_slice slice;
     uint32_t next_path, next_agent; // whose turn it is
     float weight;
-    bool no_avoidance;
+    bool no_avoidance, no_bodies;
+    nav_buffer obstacles; // nav_obstacle
+    uint32_t obstacle_count;
 };
 
 // Row of a live graph, CORE_NO_ROW + core_fail for others.

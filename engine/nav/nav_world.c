@@ -58,6 +58,7 @@ void nav_world_destroy(nav_world *w) {
     nav_builder_release(w);
     nav_coarse_release(&w->coarse);
     core_free(w->encounters.data);
+    core_free(w->obstacles.data);
     core_free(w->way.point);
     core_free(w->way.link);
     nav_view_scratch_release(&w->views);
@@ -98,7 +99,7 @@ bool nav_world_step(nav_world *w, float dt) {
 static const char *const heuristics[] = {"euclid", "octile", "zero", NULL};
 static const char *const avoidances[] = {"orca", "none", NULL};
 static const char *const grid_methods[] = {"jump", "astar", NULL};
-static const char *const settings[] = {"heuristic", "weight", "avoidance", "slice"};
+static const char *const settings[] = {"heuristic", "weight", "avoidance", "slice", "bodies"};
 
 const char *const *nav_method_names(const char *kind) {
     static const char *const none[] = {NULL};
@@ -139,7 +140,40 @@ static bool set_slice(nav_world *w, const char *value) {
     return true;
 }
 
+static bool set_bodies(nav_world *w, const char *value) {
+    static const char *const names[] = {"on", "off", NULL};
+    int i = place_of(value, names);
+    if (i < 0) {
+        return core_fail("nav.bodies=%s: expected on or off", value);
+    }
+    w->no_bodies = i == 1;
+    return true;
+}
+bool nav_world_minds_bodies(const nav_world *w) { return !w->no_bodies; }
+
+bool nav_world_set_obstacles(nav_world *w, const nav_obstacle *o, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        core_vec3 sum = core_v3_add(o[i].position, o[i].velocity);
+        if (!(core_absf(sum.x) <= 1e7f && core_absf(sum.y) <= 1e7f && core_absf(sum.z) <= 1e7f) ||
+            !(o[i].radius > 0.0f && o[i].radius <= 1e3f)) {
+            return core_fail("nav_world_set_obstacles: number %u has a radius of %g m at (%g, %g, "
+                             "%g), expected more than 0 up to 1000 and finite numbers",
+                             i, (double)o[i].radius, (double)o[i].position.x,
+                             (double)o[i].position.y, (double)o[i].position.z);
+        }
+    }
+    nav_buffer_fit(&w->obstacles, ((size_t)count + 1) * sizeof *o);
+    if (count) {
+        memcpy(w->obstacles.data, o, count * sizeof *o);
+    }
+    w->obstacle_count = count;
+    return true;
+}
+
 bool nav_world_set(nav_world *w, const char *name, const char *value) {
+    if (strcmp(name, "bodies") == 0) {
+        return set_bodies(w, value);
+    }
     if (strcmp(name, "slice") == 0) {
         return set_slice(w, value);
     }
@@ -164,8 +198,8 @@ bool nav_world_set(nav_world *w, const char *name, const char *value) {
     }
     const char *near = core_nearest(name, settings, CORE_COUNT_OF(settings));
     return core_fail(
-        "nav.%s: no such setting; %s%s%sthere are heuristic, weight, avoidance and slice", name,
-        near ? "did you mean " : "", near ? near : "", near ? "? " : "");
+        "nav.%s: no such setting; %s%s%sthere are heuristic, weight, avoidance, slice and bodies",
+        name, near ? "did you mean " : "", near ? near : "", near ? "? " : "");
 }
 
 // ---- contents ----

@@ -126,6 +126,8 @@ struct scene {
     audio_world *audio;
     scene_led *led; // [led_count]
     uint32_t led_count;
+    nav_obstacle *obstacle; // [obstacle_room] bodies that agents go round
+    uint32_t obstacle_room;
     scene_surface *surface; // [surface_count] walkable surfaces made from bodies
     uint32_t surface_count;
     core_vec3 *soup_corner; // [3 * soup_room] triangles of one body

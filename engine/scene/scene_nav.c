@@ -149,6 +149,52 @@ static void lead(scene *s, uint32_t row, nav_agent agent) {
     scene_local_from_world(s, row);
 }
 
+// ---- bodies in the way ----
+
+#define LARGEST  3.0f // m of radius; what is larger is part of the world
+#define LOWEST   0.3f // m of height; what is lower is stepped over
+#define ROUNDEST 2.0f // a disc stands for shapes whose sides differ by no more
+#define MOVING   0.1f // m/s
+
+static bool is_led(const scene *s, phys_body body) {
+    scene_entity e = scene_entity_of_body(s, body);
+    return !core_handle_is_null(scene_entity_agent(s, e));
+}
+
+// A dynamic body, or a kinematic one that moves, as a disc.
+static bool obstacle_of(const scene *s, const phys_shape_view *v, nav_obstacle *out) {
+    core_vec3 size = core_v3_sub(v->bounds.max, v->bounds.min), velocity;
+    float wide = CORE_MAX(size.x, size.z), narrow = CORE_MIN(size.x, size.z);
+    if (v->body_type == PHYS_STATIC || wide > 2.0f * LARGEST || size.y < LOWEST ||
+        wide > ROUNDEST * narrow || is_led(s, v->body)) {
+        return false;
+    }
+    phys_body_velocity(s->phys, v->body, &velocity);
+    if (v->body_type == PHYS_KINEMATIC && core_v3_dot(velocity, velocity) < MOVING * MOVING) {
+        return false;
+    }
+    core_vec3 middle = core_v3_scale(core_v3_add(v->bounds.min, v->bounds.max), 0.5f);
+    *out = (nav_obstacle){{middle.x, v->bounds.min.y, middle.z}, velocity, 0.5f * wide};
+    return true;
+}
+
+static void find_obstacles(scene *s) {
+    uint32_t count = 0, shapes = 0;
+    if (s->phys && nav_agent_count(s->nav) && nav_world_minds_bodies(s->nav)) {
+        shapes = phys_world_shape_count(s->phys);
+    }
+    if (shapes > s->obstacle_room) {
+        s->obstacle = core_realloc(s->obstacle, s->obstacle_room * sizeof *s->obstacle,
+                                   shapes * sizeof *s->obstacle);
+        s->obstacle_room = shapes;
+    }
+    for (uint32_t row = 0; row < shapes; row++) {
+        phys_shape_view v;
+        count += phys_world_shape(s->phys, row, &v) && obstacle_of(s, &v, &s->obstacle[count]);
+    }
+    nav_world_set_obstacles(s->nav, s->obstacle, count);
+}
+
 void scene_nav_step(scene *s) {
     if (!s->nav) {
         return;
@@ -156,6 +202,7 @@ void scene_nav_step(scene *s) {
     scene_surfaces_keep_up(s);
     place_agents(s);
     place_led(s);
+    find_obstacles(s);
     nav_world_step(s->nav, s->dt);
     for (uint32_t i = 0; i < nav_agent_count(s->nav); i++) {
         nav_agent agent = nav_agent_at(s->nav, i);

@@ -232,6 +232,7 @@ void scene_surfaces_release(scene *s) {
     }
     core_free(s->surface);
     core_free(s->led);
+    core_free(s->obstacle);
     core_free(s->soup_corner);
     core_free(s->soup_index);
 }

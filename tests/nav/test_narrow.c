@@ -89,6 +89,34 @@ static void the_arrived_make_room(void) {
     }
 }
 
+// A ball rolls through the crowd, straight on: nobody is run over, all arrive.
+static void moving_obstacles_are_avoided(void) {
+    crowd_room(&c, 30, 12, 40, 40, 3.0f);
+    for (int i = 0; i < 10; i++) {
+        crowd_send(&c, 2, 1 + (float)i, 28, 1 + (float)i);
+    }
+    nav_obstacle ball = {{28, 0, 6}, {-2, 0, 0}, 0.8f};
+    float nearest = 99;
+    for (int step = 0; step < 60 * 40; step++) {
+        TEST_ASSERT_TRUE(nav_world_set_obstacles(c.world, &ball, 1));
+        nav_world_step(c.world, 1.0f / 60.0f);
+        ball.position.x += ball.velocity.x / 60.0f;
+        for (int i = 0; i < 10; i++) {
+            core_vec3 p;
+            nav_agent_position(c.world, c.agent[i], &p);
+            nearest = fminf(nearest, hypotf(p.x - ball.position.x, p.z - ball.position.z));
+        }
+    }
+    crowd_measure(&c);
+    printf("nearest to the ball: %.3f m of 1.1 m\n", (double)nearest);
+    TEST_ASSERT_EQUAL_INT(10, c.arrived);
+    TEST_ASSERT_TRUE(nearest >= 1.1f * 0.98f);
+    ball.radius = 0;
+    TEST_ASSERT_FALSE(nav_world_set_obstacles(c.world, &ball, 1));
+    ball.radius = 1, ball.velocity.x = NAN;
+    TEST_ASSERT_FALSE(nav_world_set_obstacles(c.world, &ball, 1));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(two_meet_in_a_door);
@@ -96,5 +124,6 @@ int main(void) {
     RUN_TEST(a_long_passage_is_used_one_way_at_a_time);
     RUN_TEST(wide_doors_are_no_gates);
     RUN_TEST(the_arrived_make_room);
+    RUN_TEST(moving_obstacles_are_avoided);
     return UNITY_END();
 }
