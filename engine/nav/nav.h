@@ -344,10 +344,33 @@ uint32_t nav_path_link(const nav_world *world, nav_path path, uint32_t i);
 // Times it has been planned: changes when the nodes may have.
 uint32_t nav_path_plans(const nav_world *world, nav_path path);
 
+// ---- debug drawing: lines for whoever draws them ----
+typedef enum nav_line_kind {
+    NAV_LINE_WALL,     // border of a surface
+    NAV_LINE_SEAM,     // border between its polygons
+    NAV_LINE_LINK,     // of a graph, or one that leaves a surface
+    NAV_LINE_SHUT,     // the same, closed
+    NAV_LINE_PATH,     // of an agent, or a path alone
+    NAV_LINE_SEARCHED, // what the last search looked at: tree of nodes, views over edges
+    NAV_LINE_AGENT,    // its circle
+    NAV_LINE_VELOCITY,
+    NAV_LINE_WISH // velocity wanted before avoidance
+} nav_line_kind;
+typedef void nav_line_fn(void *ctx, nav_line_kind kind, core_vec3 a, core_vec3 b);
+bool nav_mesh_lines(const nav_world *world, nav_mesh mesh, nav_line_fn *fn, void *ctx);
+bool nav_graph_lines(const nav_world *world, nav_graph graph, nav_line_fn *fn, void *ctx);
+void nav_path_lines(const nav_world *world, nav_line_fn *fn, void *ctx); // all paths
+void nav_agent_lines(const nav_world *world, nav_line_fn *fn, void *ctx);
+// Of the last search across this surface, or on this graph.
+bool nav_mesh_search_lines(const nav_world *world, nav_mesh mesh, nav_line_fn *fn, void *ctx);
+bool nav_graph_search_lines(const nav_world *world, nav_graph graph, nav_line_fn *fn, void *ctx);
+
 // ---- agents ----
 typedef enum nav_agent_state {
     NAV_AGENT_IDLE,
     NAV_AGENT_WALKING,
+    // At its goal, or beside somebody who has arrived at the same one and it comes no further.
+    // Makes room for others and comes back.
     NAV_AGENT_ARRIVED,
     // No way, or no progress for two seconds. It tries on: a change of the graph or room to move
     // makes it walk again.

@@ -5,6 +5,9 @@
 CORE_COLUMNS_DEFINE(nav_agents, NAV_AGENT_COLUMNS)
 
 #define STUCK_AFTER 2.0f  // s without progress
+#define CROWD_AFTER 1.2f  // s, beside others at the goal
+#define OFF_WAY     3.0f  // radii from its way, then it is planned anew
+#define OFF_PLACE   0.2f  // m by which who has arrived may be pushed aside
 #define STEP_HEIGHT 0.5f  // m by which a driven agent may stand off its way
 #define SLOW_TURN   0.25f // share of the speed kept through the sharpest corner
 #define SLOWEST     0.05f // share of it kept up to the goal
@@ -284,7 +287,9 @@ static void take_path(nav_world *w, uint32_t row, uint32_t path) {
     a->plans[row] = p->plans;
     if (p->count >= 2) {
         a->corner[row] = between(point[0], point[1], place(a, row));
-        if (p->status == NAV_FOUND) {
+        if (p->status == NAV_FOUND && !core_handle_is_null(p->mesh)) {
+            a->corners[row]--; // its last point is the goal
+        } else if (p->status == NAV_FOUND) {
             a->corners[row] -= between(point[p->count - 2], point[p->count - 1], goal_of(a, row));
         }
     }
@@ -397,8 +402,29 @@ static void note_progress(nav_world *w, uint32_t row, float dt) {
     }
 }
 
-// Plans the ways of those whose ground has changed, from where they are now: a fixed number in a
-// step, in turns.
+// Whether others have pushed it so far from the piece of way it is on that a corner may lie
+// between.
+static bool off_its_way(const nav_world *w, uint32_t row, uint32_t path) {
+    const nav_agents *a = &w->agent;
+    const nav_path_head *p = &w->path.head[path];
+    uint32_t i = a->corner[row];
+    bool walks = a->state[row] == NAV_AGENT_WALKING || a->state[row] == NAV_AGENT_STUCK;
+    if (!walks || core_handle_is_null(p->mesh) || p->status != NAV_FOUND || i == 0 ||
+        i >= p->count || a->plans[row] != p->plans || nav_agent_row_link(w, row) != NAV_NO_LINK) {
+        return false;
+    }
+    core_vec3 from = w->path.points[path].point[i - 1], to = w->path.points[path].point[i];
+    flat way = {to.x - from.x, to.z - from.z};
+    flat off = {a->px[row] - from.x, a->pz[row] - from.z};
+    float square = way.x * way.x + way.z * way.z;
+    float t = square > 0.0f ? (off.x * way.x + off.z * way.z) / square : 0.0f;
+    t = CORE_CLAMP(t, 0.0f, 1.0f);
+    flat aside = {off.x - t * way.x, off.z - t * way.z};
+    return flat_length(aside) > OFF_WAY * a->radius[row];
+}
+
+// Plans the ways of those whose ground has changed or who are off their way, from where they are
+// now: a fixed number in a step, in turns.
 static void plan_anew(nav_world *w) {
     nav_agents *a = &w->agent;
     uint32_t count = core_columns_count(&a->set);
@@ -406,7 +432,7 @@ static void plan_anew(nav_world *w) {
     for (uint32_t i = 0; i < count; i++) {
         uint32_t row = (first + i) % count;
         uint32_t path = core_columns_row(&w->path.set, a->path[row]);
-        if (path != CORE_NO_ROW && nav_path_outdated(w, path)) {
+        if (path != CORE_NO_ROW && (nav_path_outdated(w, path) || off_its_way(w, row, path))) {
             w->next_agent = row;
             if (w->plans_left == 0) {
                 return;
@@ -428,14 +454,46 @@ static bool keep_path(nav_world *w, uint32_t row, uint32_t path) {
     return p->count > 0;
 }
 
-// Others may have pushed it off its goal, which it had reached: back, slowly, when it is clearly
+// Others may have pushed it off the place at which it arrived: back, slowly, when it is clearly
 // off.
 static void come_back(nav_agents *a, uint32_t row, float dt) {
-    flat to = {a->gx[row] - a->px[row], a->gz[row] - a->pz[row]};
+    flat to = {a->ax[row] - a->px[row], a->az[row] - a->pz[row]};
     float distance = flat_length(to);
-    if (distance > 2.0f * a->arrive[row]) {
+    if (distance > OFF_PLACE) {
         float speed = CORE_MIN(0.5f * a->max_speed[row], distance / dt);
         a->wx[row] = to.x / distance * speed, a->wz[row] = to.z / distance * speed;
+    }
+}
+
+static void arrive(nav_agents *a, uint32_t row) {
+    a->state[row] = NAV_AGENT_ARRIVED;
+    anchor(a, row);
+}
+
+static bool beside_arrived(const nav_world *w, uint32_t row) {
+    const nav_agents *a = &w->agent;
+    const nav_crowd *c = &w->crowd;
+    for (uint32_t i = 0; i < c->near_count[row]; i++) {
+        uint32_t other = c->near[row * NAV_NEIGHBOURS + i];
+        flat goals = {a->gx[row] - a->gx[other], a->gz[row] - a->gz[other]};
+        flat apart = {a->px[row] - a->px[other], a->pz[row] - a->pz[other]};
+        float touch = 1.3f * (a->radius[row] + a->radius[other]);
+        bool same = flat_length(goals) <= a->arrive[row] && a->gy[row] == a->gy[other];
+        if (a->state[other] == NAV_AGENT_ARRIVED && same && flat_length(apart) < touch) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Many go to one place: who stands beside others that have arrived there for some time has arrived,
+// too.
+static void arrive_in_crowd(nav_world *w, uint32_t row, float dt) {
+    nav_agents *a = &w->agent;
+    bool walks = a->state[row] == NAV_AGENT_WALKING || a->state[row] == NAV_AGENT_STUCK;
+    a->beside[row] = walks && beside_arrived(w, row) ? a->beside[row] + dt : 0.0f;
+    if (a->beside[row] > CROWD_AFTER) {
+        arrive(a, row);
     }
 }
 
@@ -463,7 +521,10 @@ static void steer(nav_world *w, uint32_t row, float dt) {
             return;
         }
         bool there = w->path.head[path].status == NAV_FOUND;
-        a->state[row] = there ? NAV_AGENT_ARRIVED : NAV_AGENT_STUCK;
+        a->state[row] = NAV_AGENT_STUCK;
+        if (there) {
+            arrive(a, row);
+        }
         return;
     }
     core_vec3 to3 = core_v3_sub(target, place(a, row));
@@ -585,5 +646,8 @@ void nav_agents_step(nav_world *w, float dt) {
     }
     if (!w->no_avoidance && count) {
         nav_crowd_part(w);
+    }
+    for (uint32_t row = 0; !w->no_avoidance && row < count; row++) {
+        arrive_in_crowd(w, row, dt);
     }
 }

@@ -8,7 +8,7 @@
 // result does not depend on the number of threads.
 #include "nav/nav_internal.h"
 
-#define NEIGHBOURS 10u
+#define NEIGHBOURS NAV_NEIGHBOURS
 #define HORIZON    2.0f  // s that velocities must stay free of collisions
 #define LOOK       1.0f  // s of both agents' way within which neighbours count
 #define STOREY     2.0f  // m of height that part agents
@@ -294,7 +294,9 @@ static void avoid_one(nav_world *w, uint32_t row, float dt) {
     if (kept < planes) {
         least_broken(plane, planes, kept, walls, a->max_speed[row], &out);
     }
-    a->nx[row] = out.x, a->nz[row] = out.z;
+    float speed = core_sqrtf(dot(out, out)), most = a->max_speed[row];
+    float scale = speed > most ? most / speed : 1.0f; // lines that all but coincide cross far off
+    a->nx[row] = out.x * scale, a->nz[row] = out.z * scale;
 }
 
 // ---- the crowd: agents sorted by cell ----

@@ -101,6 +101,7 @@ CORE_COLUMNS_DECLARE(nav_paths, NAV_PATH_COLUMNS)
     X(float, ax, CORE_COLUMN_STATE) /* where it was when it last made progress */                  \
     X(float, ay, CORE_COLUMN_STATE)                                                                \
     X(float, az, CORE_COLUMN_STATE)                                                                \
+    X(float, beside, CORE_COLUMN_STATE)  /* s beside others that have arrived at its goal */       \
     X(float, stalled, CORE_COLUMN_STATE) /* s since then */                                        \
     X(uint32_t, state, CORE_COLUMN_STATE)                                                          \
     X(uint32_t, corner, CORE_COLUMN_STATE)  /* number of the path's node it walks to */            \
@@ -138,6 +139,7 @@ typedef struct nav_scratch {
     uint32_t stamp; // of the last query; records are cleared when it wraps
 } nav_scratch;
 
+#define NAV_NEIGHBOURS 10u
 // Agents sorted by cell for avoidance; rebuilt each step, grows with the number of agents.
 typedef struct nav_crowd {
     void *block; // all arrays below

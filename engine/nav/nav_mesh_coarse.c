@@ -205,7 +205,7 @@ static void collect_links(search *q) {
 
 // ---- the way ----
 
-static uint32_t span_under(const nav_mesh_data *m, uint32_t polygon, nav_point at) {
+uint32_t nav_mesh_span_under(const nav_mesh_data *m, uint32_t polygon, nav_point at) {
     nav_rectangle r = m->polygon.shape[polygon];
     uint32_t span = r.span;
     for (double x = m->span.x[r.span] + 1.0; x < at.x; x += 1.0) {
@@ -239,7 +239,7 @@ static void write_way(search *q, uint32_t last) {
         }
         if (r < q->points) {
             nav_point at = place_of(q, r, from);
-            put(q, (nav_waypoint){at, span_under(m, polygon, at), r / NAV_SAMPLES, polygon,
+            put(q, (nav_waypoint){at, nav_mesh_span_under(m, polygon, at), r / NAV_SAMPLES, polygon,
                                   NAV_NO_LINK});
             continue;
         }
@@ -312,8 +312,9 @@ static void improve(search *q) {
         cost = now;
     }
     for (uint32_t i = 1; i + 1 < q->s->count; i++) {
-        way[i].span =
-            way[i].edge == NAV_NONE ? way[i].span : span_under(q->m, way[i].polygon, way[i].at);
+        way[i].span = way[i].edge == NAV_NONE
+                          ? way[i].span
+                          : nav_mesh_span_under(q->m, way[i].polygon, way[i].at);
     }
 }
 

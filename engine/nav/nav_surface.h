@@ -418,6 +418,8 @@ typedef struct nav_waypoint {
 nav_status nav_mesh_coarse(nav_world *world, const nav_mesh_data *mesh, nav_ends *ends,
                            const float *cost, bool partial, nav_result *result);
 double nav_mesh_link_cost(const nav_mesh_data *mesh, uint32_t link); // m of plain ground
+// The span of a polygon under a point of it, or of its border.
+uint32_t nav_mesh_span_under(const nav_mesh_data *mesh, uint32_t polygon, nav_point at);
 void nav_coarse_release(nav_coarse_scratch *scratch);
 
 #endif

@@ -1,5 +1,7 @@
 // Agents in a scene: who leads whom. An entity without a body follows its agent; a body is pushed
 // along by it, and says where the agent is.
+#include <string.h>
+
 #include "scene/scene_internal.h"
 
 nav_world *scene_nav(scene *s) {
@@ -212,4 +214,38 @@ void scene_nav_step(scene *s) {
         }
     }
     lead_movers(s);
+}
+
+// ---- drawing ----
+
+static void draw_line(void *ctx, nav_line_kind kind, core_vec3 a, core_vec3 b) {
+    static const float color[][4] = {
+        [NAV_LINE_WALL] = {1.0f, 0.25f, 0.1f, 1.0f}, [NAV_LINE_SEAM] = {0.1f, 0.5f, 0.9f, 0.35f},
+        [NAV_LINE_LINK] = {0.1f, 0.8f, 0.7f, 1.0f},  [NAV_LINE_SHUT] = {0.4f, 0.1f, 0.1f, 1.0f},
+        [NAV_LINE_PATH] = {1.0f, 0.85f, 0.1f, 1.0f}, [NAV_LINE_SEARCHED] = {0.6f, 0.2f, 0.9f, 0.6f},
+        [NAV_LINE_AGENT] = {0.1f, 0.9f, 0.2f, 1.0f}, [NAV_LINE_VELOCITY] = {0.1f, 0.9f, 0.2f, 1.0f},
+        [NAV_LINE_WISH] = {0.9f, 0.9f, 0.9f, 0.8f},
+    };
+    const float lift = 0.05f; // above the ground
+    gfx_pen pen = gfx_pen_default();
+    memcpy(pen.color, color[kind], sizeof pen.color);
+    a.y += lift, b.y += lift;
+    gfx_draw_line(scene_gfx(ctx), a, b, &pen);
+}
+
+void scene_draw_surface(scene *s, nav_mesh mesh, bool search) {
+    nav_world *w = scene_nav(s);
+    if (nav_mesh_lines(w, mesh, draw_line, s) && search) {
+        nav_mesh_search_lines(w, mesh, draw_line, s);
+    }
+}
+void scene_draw_graph(scene *s, nav_graph graph, bool search) {
+    nav_world *w = scene_nav(s);
+    if (nav_graph_lines(w, graph, draw_line, s) && search) {
+        nav_graph_search_lines(w, graph, draw_line, s);
+    }
+}
+void scene_draw_agents(scene *s) {
+    nav_path_lines(scene_nav(s), draw_line, s);
+    nav_agent_lines(scene_nav(s), draw_line, s);
 }

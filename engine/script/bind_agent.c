@@ -1,5 +1,6 @@
 // Agents of corsac.nav.
 #include "script/bind_body.h"
+#include "script/bind_grid.h"
 #include "script/bind_mover.h"
 #include "script/bind_nav.h"
 #include "script/internal.h"
@@ -53,6 +54,13 @@ static int go(script *s, lua_State *L, void *args) {
 static int cross(script *s, lua_State *L, void *args) {
     const go_args *a = args;
     return done(L, nav_agent_go_on_mesh(world_of(s), a->self, a->graph, core_v3(a->x, a->y, a->z)));
+}
+typedef struct flow_args {
+    core_handle self, flow;
+} flow_args;
+static int follow(script *s, lua_State *L, void *args) {
+    const flow_args *a = args;
+    return done(L, nav_agent_go_with_flow(world_of(s), a->self, a->flow));
 }
 static int stop(script *s, lua_State *L, void *args) {
     return done(L, nav_agent_stop(world_of(s), *(core_handle *)args));
@@ -160,6 +168,10 @@ const bind_fn bind_agent_methods[] = {
          {"surface", BIND_OBJECT, BIND_AT(go_args, graph), "on which", .type = &bind_surface_type},
          POINT(go_args)),
      NULL, sizeof(go_args), BIND_SIM, .run = cross},
+    {"follow", "Walks with a flow to its goal.",
+     BIND_ARGS(
+         {"flow", BIND_OBJECT, BIND_AT(flow_args, flow), "where to", .type = &bind_flow_type}),
+     NULL, sizeof(flow_args), BIND_SIM, .run = follow},
     {"stop", "Stands still.", NULL, NULL, SELF, BIND_SIM, .run = stop},
     {"getState", "\"idle\", \"walking\", \"arrived\" or \"stuck\".", NULL,
      BIND_RETURNS({"state", "string", NULL}), SELF, BIND_RUNNING, .run = get_state},

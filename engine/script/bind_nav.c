@@ -1,5 +1,6 @@
 // corsac.nav: waypoint graphs and paths; who walks is an Agent (bind_agent.c).
 #include "script/bind_body.h"
+#include "script/bind_grid.h"
 #include "script/bind_surface.h"
 #include "script/internal.h"
 
@@ -197,6 +198,18 @@ static int graph_destroy(script *s, lua_State *L, void *args) {
     return done(L, nav_graph_destroy(world_of(s), *(core_handle *)args));
 }
 
+static int graph_draw(script *s, lua_State *L, void *args) {
+    (void)L;
+    const bind_draw_args *a = args;
+    scene_draw_graph(s->scene, a->self, a->search);
+    return 0;
+}
+static int draw_agents(script *s, lua_State *L, void *args) {
+    (void)L, (void)args;
+    scene_draw_agents(s->scene);
+    return 0;
+}
+
 typedef struct search_options {
     int heuristic;
     float weight;
@@ -362,6 +375,10 @@ static const bind_fn graph_methods[] = {
      BIND_RETURNS({"ids", "integer[]?", NULL}, {"cost", "number", NULL},
                   {"status", "string", NULL}),
      sizeof(search_args), BIND_SIM, .run = graph_find_path},
+    {"draw", "Draws its links for one frame.",
+     BIND_ARGS({"search", BIND_BOOL, BIND_AT(bind_draw_args, search),
+                "also what the last search on it reached", .optional = true}),
+     NULL, sizeof(bind_draw_args), BIND_UPDATE | BIND_DRAW, .run = graph_draw},
     {"destroy", "Removes it; its paths and agents are left without a way.", NULL, NULL, SELF,
      BIND_SIM, .run = graph_destroy},
     {0}};
@@ -419,6 +436,21 @@ static const bind_fn functions[] = {
                 .fields = bind_surface_fields}),
      BIND_RETURNS({"surface", "corsac.Surface", NULL}), sizeof(bind_surface_call), BIND_SIM,
      .run = bind_surface_new},
+    {"newGrid", "Makes a grid of cells, for searches that step from cell to cell.",
+     BIND_ARGS({"width", BIND_INT, BIND_AT(bind_grid_args, width), "cells", NULL, BIND_BETWEEN, 1,
+                NAV_GRID_MOST},
+               {"height", BIND_INT, BIND_AT(bind_grid_args, height), "cells", NULL, BIND_BETWEEN, 1,
+                NAV_GRID_MOST}),
+     BIND_RETURNS({"grid", "corsac.Grid", NULL}), sizeof(bind_grid_args), BIND_SIM,
+     .run = bind_grid_new},
+    {"newFlow", "Finds the shortest ways from everywhere on a surface to one goal.",
+     BIND_ARGS({"surface", BIND_OBJECT, BIND_AT(bind_flow_args, surface), "on which",
+                .type = &bind_surface_type},
+               {"goal", BIND_VEC3, BIND_AT(bind_flow_args, goal), "where they end", "m"}),
+     BIND_RETURNS({"flow", "corsac.Flow", NULL}), sizeof(bind_flow_args), BIND_SIM,
+     .run = bind_flow_new},
+    {"drawAgents", "Draws agents, their velocities and wishes, and all paths for one frame.", NULL,
+     NULL, 0, BIND_UPDATE | BIND_DRAW, .run = draw_agents},
     {"loadSurface", "Reads a surface that Surface:save wrote.",
      BIND_ARGS({"path", BIND_STRING, BIND_AT(bind_load_call, path),
                 "a .cnav file of the scene or of the player's folder"}),
@@ -428,7 +460,12 @@ static const bind_fn functions[] = {
 
 static const bind_module modules[] = {
     {"corsac.nav", "Waypoint graphs, walkable surfaces, paths and agents.", functions}, {0}};
-static const bind_type *const types[] = {&bind_graph_type, &bind_path_type, &bind_agent_type,
-                                         &bind_surface_type, NULL};
+static const bind_type *const types[] = {&bind_graph_type,
+                                         &bind_path_type,
+                                         &bind_agent_type,
+                                         &bind_surface_type,
+                                         &bind_grid_type,
+                                         &bind_flow_type,
+                                         NULL};
 
 const bind_room bind_nav_room = {"nav", modules, types};

@@ -18,6 +18,10 @@ typedef struct bind_agent_call {
 extern const bind_arg bind_agent_fields[];
 extern const bind_fn bind_agent_methods[];
 bind_handler bind_agent_new;
+typedef struct bind_draw_args {
+    core_handle self;
+    bool search;
+} bind_draw_args;
 bool bind_agent_alive(script *s, core_handle h);
 
 // Pushes a table {x, y, z}.

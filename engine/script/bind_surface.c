@@ -191,6 +191,12 @@ static int get_polygon_count(script *s, lua_State *L, void *args) {
     lua_pushnumber(L, nav_mesh_polygons(world_of(s), *(core_handle *)args));
     return 1;
 }
+static int draw(script *s, lua_State *L, void *args) {
+    (void)L;
+    const bind_draw_args *a = args;
+    scene_draw_surface(s->scene, a->self, a->search);
+    return 0;
+}
 static int destroy(script *s, lua_State *L, void *args) {
     return done(L, nav_mesh_destroy(world_of(s), *(core_handle *)args));
 }
@@ -345,6 +351,10 @@ static const bind_fn methods[] = {
      BIND_RUNNING, .run = get_area},
     {"getPolygonCount", "How many polygons it has.", NULL, BIND_RETURNS({"count", "integer", NULL}),
      SELF, BIND_RUNNING, .run = get_polygon_count},
+    {"draw", "Draws its borders, seams and links for one frame.",
+     BIND_ARGS({"search", BIND_BOOL, BIND_AT(bind_draw_args, search),
+                "also what the last search across it looked at", .optional = true}),
+     NULL, sizeof(bind_draw_args), BIND_UPDATE | BIND_DRAW, .run = draw},
     {"destroy", "Removes it; its paths and agents are left without a way.", NULL, NULL, SELF,
      BIND_SIM, .run = destroy},
     {0}};
