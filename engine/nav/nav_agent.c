@@ -364,11 +364,16 @@ static void stop(nav_agents *a, uint32_t row) {
 static bool advance(nav_world *w, uint32_t row, uint32_t path, float dt, core_vec3 *target) {
     nav_agents *a = &w->agent;
     core_vec3 here = place(a, row);
+    // Bends of a surface keep half a cell off their corners: nearer the way on is free.
+    uint32_t mesh = core_columns_row(&w->mesh.set, w->path.head[path].mesh);
+    float slack = mesh == CORE_NO_ROW
+                      ? 0.5f * a->radius[row]
+                      : CORE_MIN(0.5f * w->mesh.data[mesh]->cell_size, 0.5f * a->radius[row]);
     while (way_point(w, row, path, a->corner[row], target)) {
         core_vec3 next;
         bool last = !way_point(w, row, path, a->corner[row] + 1, &next);
         float v = core_sqrtf(a->vx[row] * a->vx[row] + a->vz[row] * a->vz[row]);
-        float near = last ? a->arrive[row] : CORE_MAX(0.5f * a->radius[row], 1.5f * v * dt);
+        float near = last ? a->arrive[row] : CORE_MAX(slack, 1.5f * v * dt);
         core_vec3 to = core_v3_sub(*target, here);
         if (a->driven[row] && core_absf(to.y) <= STEP_HEIGHT) {
             to.y = 0.0f; // physics decides how high it stands

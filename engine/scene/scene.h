@@ -172,7 +172,7 @@ scene_surface_desc scene_surface_desc_default(void);
 // Debug lines for the next frame; search: what the last one looked at, too.
 void scene_draw_surface(scene *s, nav_mesh mesh, bool search);
 void scene_draw_graph(scene *s, nav_graph graph, bool search);
-void scene_draw_agents(scene *s); // and all paths
+void scene_draw_agents(scene *s);                                        // and all paths
 nav_mesh scene_surface_create(scene *s, const scene_surface_desc *desc); // null + core_fail
 // Gives the entity an animation instance (destroyed with it). Its meshes follow the palette; root
 // motion moves the entity, or sets the horizontal velocity of its body.

@@ -885,6 +885,10 @@ function Graph:getText() end
 ---@return string status
 function Graph:findPath(start, goal, options) end
 
+---Draws its links for one frame.
+---@param search? boolean also what the last search on it reached
+function Graph:draw(search) end
+
 ---Removes it; its paths and agents are left without a way.
 function Graph:destroy() end
 
@@ -937,6 +941,10 @@ function Agent:go(graph, x, y, z) end
 ---@param y number
 ---@param z number
 function Agent:cross(surface, x, y, z) end
+
+---Walks with a flow to its goal.
+---@param flow corsac.Flow where to
+function Agent:follow(flow) end
 
 ---Stands still.
 function Agent:stop() end
@@ -1091,8 +1099,62 @@ function Surface:getArea() end
 ---@return integer count
 function Surface:getPolygonCount() end
 
+---Draws its borders, seams and links for one frame.
+---@param search? boolean also what the last search across it looked at
+function Surface:draw(search) end
+
 ---Removes it; its paths and agents are left without a way.
 function Surface:destroy() end
+
+---Cells on which one steps.
+---@class corsac.Grid
+local Grid = {}
+
+---Blocks or frees a cell.
+---@param x integer column
+---@param y integer row
+---@param blocked boolean nobody steps there
+function Grid:setBlocked(x, y, blocked) end
+
+---Whether a cell is blocked; cells outside are.
+---@param x integer column
+---@param y integer row
+---@return boolean blocked
+function Grid:isBlocked(x, y) end
+
+---How many cells it has along both sides.
+---@return integer width
+---@return integer height
+function Grid:getSize() end
+
+---@class Grid.findPath.options
+---@field method? "jump"|"astar" jump point search, or A*
+
+---Shortest way in steps to the eight neighbours: cells {x, y} (nil without one) and its length in cells. No corners are cut.
+---@param x0 integer column of the start
+---@param y0 integer its row
+---@param x1 integer column of the goal
+---@param y1 integer its row
+---@param options? Grid.findPath.options how to search
+---@return integer[][]? cells
+---@return number length
+function Grid:findPath(x0, y0, x1, y1, options) end
+
+---Removes it.
+function Grid:destroy() end
+
+---Ways to one goal from everywhere.
+---@class corsac.Flow
+local Flow = {}
+
+---The way from a point: points {x, y, z} (nil without one) and its length.
+---@param from number[] where it begins
+---@return number[][]? points
+---@return number length
+function Flow:findPath(from) end
+
+---Removes it; agents that walk with it search for themselves.
+function Flow:destroy() end
 
 ---Samples that sources play.
 ---@class corsac.Sound
@@ -2583,6 +2645,21 @@ function corsac.nav.newAgent(options) end
 ---@param options corsac.nav.newSurface.options world and agent
 ---@return corsac.Surface surface
 function corsac.nav.newSurface(options) end
+
+---Makes a grid of cells, for searches that step from cell to cell.
+---@param width integer cells
+---@param height integer cells
+---@return corsac.Grid grid
+function corsac.nav.newGrid(width, height) end
+
+---Finds the shortest ways from everywhere on a surface to one goal.
+---@param surface corsac.Surface on which
+---@param goal number[] where they end
+---@return corsac.Flow flow
+function corsac.nav.newFlow(surface, goal) end
+
+---Draws agents, their velocities and wishes, and all paths for one frame.
+function corsac.nav.drawAgents() end
 
 ---Reads a surface that Surface:save wrote.
 ---@param path string a .cnav file of the scene or of the player's folder

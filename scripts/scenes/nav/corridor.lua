@@ -6,7 +6,7 @@ local nav, scene, gfx = corsac.nav, corsac.scene, corsac.gfx
 local show = corsac.param("show", false)
 local surface, agents, worst, last = nil, {}, 0, 0
 
-function corsac.conf(t) t.steps = math.floor(60 * (60 + n * 2.4 / gap)) end
+function corsac.conf(t) t.steps = 60 * (100 + n * (gap < 1.8 and 12 or 1)) end
 
 function corsac.load()
     local level = {
