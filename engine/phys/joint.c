@@ -6,7 +6,8 @@
 CORE_COLUMNS_DEFINE(phys_joints, PHYS_JOINT_COLUMNS)
 
 // What the types offer.
-enum { HAS_LIMIT = 1u, HAS_DRIVE = 2u, HAS_TWO_ANCHORS = 4u };
+enum { HAS_LIMIT = 1u, HAS_SPRING = 2u, HAS_TWO_ANCHORS = 4u, HAS_MOTOR = 8u };
+#define HAS_DRIVE (HAS_SPRING | HAS_MOTOR)
 static const struct {
     const char *name;
     unsigned has;
@@ -16,9 +17,9 @@ static const struct {
     [PHYS_JOINT_DISTANCE] = {"distance", HAS_LIMIT | HAS_DRIVE | HAS_TWO_ANCHORS},
     [PHYS_JOINT_REVOLUTE] = {"revolute", HAS_LIMIT | HAS_DRIVE},
     [PHYS_JOINT_PRISMATIC] = {"prismatic", HAS_LIMIT | HAS_DRIVE},
-    [PHYS_JOINT_UNIVERSAL] = {"universal", 0},
-    [PHYS_JOINT_PIVOT] = {"pivot", 0},
-    [PHYS_JOINT_PULLEY] = {"pulley", HAS_TWO_ANCHORS},
+    [PHYS_JOINT_UNIVERSAL] = {"universal", HAS_LIMIT | HAS_MOTOR},
+    [PHYS_JOINT_PIVOT] = {"pivot", HAS_MOTOR},
+    [PHYS_JOINT_PULLEY] = {"pulley", HAS_LIMIT | HAS_MOTOR | HAS_TWO_ANCHORS},
 };
 
 phys_joint_desc phys_joint_desc_default(phys_joint_type type) {
@@ -57,8 +58,10 @@ static bool check_limits(phys_joint_type type, float lower, float upper) {
     if (!(kinds[type].has & HAS_LIMIT)) {
         return core_fail("phys joint: a %s joint has no limits, leave them off", name);
     }
-    bool angle = type == PHYS_JOINT_REVOLUTE || type == PHYS_JOINT_BALL;
-    float lo = angle ? -CORE_PI_F : type == PHYS_JOINT_DISTANCE ? 0.0f : -PHYS_FAR;
+    bool angle =
+        type == PHYS_JOINT_REVOLUTE || type == PHYS_JOINT_BALL || type == PHYS_JOINT_UNIVERSAL;
+    bool length = type == PHYS_JOINT_DISTANCE || type == PHYS_JOINT_PULLEY;
+    float lo = angle ? -CORE_PI_F : length ? 0.0f : -PHYS_FAR;
     float hi = angle ? CORE_PI_F : PHYS_FAR;
     return check_number(name, "lower", lower, lo, hi) &&
            check_number(name, "upper", upper, lo, hi) &&
@@ -68,7 +71,7 @@ static bool check_limits(phys_joint_type type, float lower, float upper) {
 }
 
 static bool check_drive(phys_joint_type type, const char *what) {
-    return (kinds[type].has & HAS_DRIVE) ||
+    return (kinds[type].has & HAS_SPRING) ||
            core_fail("phys joint: a %s joint has no %s, expected distance, revolute or prismatic",
                      kinds[type].name, what);
 }
@@ -82,7 +85,9 @@ static bool check_spring(phys_joint_type type, float hertz, float damping_ratio,
 }
 
 static bool check_motor(phys_joint_type type, float speed, float max) {
-    return check_drive(type, "motor") &&
+    return ((kinds[type].has & HAS_MOTOR) ||
+            core_fail("phys joint: a %s joint has no motor, expected another than fixed and ball",
+                      kinds[type].name)) &&
            check_number(kinds[type].name, "motor_speed", speed, -PHYS_FAR, PHYS_FAR) &&
            check_number(kinds[type].name, "motor_max", max, 0.0f, 1e30f);
 }
@@ -130,6 +135,18 @@ static bool check_geometry(const phys_joint_desc *d) {
            check_vector(name, "ground_b", d->ground_b);
 }
 
+// Limits and motors of a pulley are those of a's side, a pivot's motor turns b.
+static bool check_driven(const phys_world *w, const phys_joint_desc *d) {
+    bool pulley = d->type == PHYS_JOINT_PULLEY;
+    if (!(d->limit || d->motor) || !(pulley || d->type == PHYS_JOINT_PIVOT)) {
+        return true;
+    }
+    uint32_t row = phys_body_row(w, pulley ? d->a : d->b);
+    return (row != CORE_NO_ROW && w->bodies.type[row] == PHYS_DYNAMIC) ||
+           core_fail("phys joint: body %c of a %s joint with limits or a motor is not dynamic",
+                     pulley ? 'a' : 'b', kinds[d->type].name);
+}
+
 static bool check_desc(const phys_world *w, const phys_joint_desc *d) {
     if (d->cookie != PHYS_JOINT_COOKIE) {
         return core_fail("phys joint: description was not made by phys_joint_desc_default");
@@ -149,9 +166,9 @@ static bool check_desc(const phys_world *w, const phys_joint_desc *d) {
            (!d->motor || check_motor(d->type, d->motor_speed, d->motor_max)) &&
            check_spring(d->type, d->hertz, d->damping_ratio, d->rest) &&
            (d->damping == 0.0f || check_drive(d->type, "damping")) &&
-           check_number(name, "damping", d->damping, 0.0f, 1e30f) &&
-           (d->cone == 0.0f || d->type == PHYS_JOINT_BALL ||
-            core_fail("phys joint: a %s joint has no cone, expected ball", name)) &&
+           check_number(name, "damping", d->damping, 0.0f, 1e30f) && check_driven(w, d) &&
+           (d->cone == 0.0f || d->type == PHYS_JOINT_BALL || d->type == PHYS_JOINT_UNIVERSAL ||
+            core_fail("phys joint: a %s joint has no cone, expected ball or universal", name)) &&
            check_number(name, "cone", d->cone, 0.0f, CORE_PI_F) &&
            check_number(name, "ratio", d->ratio, pulley ? 1e-6f : -1e6f, 1e6f) &&
            (d->ratio != 0.0f || core_fail("phys joint: ratio of a %s joint is 0", name)) &&

@@ -111,8 +111,37 @@ static void pulley_row(const soft_joints *s, const joint_work *k, joint_row *r, 
     r->error = core_v3_length(da) + ratio * core_v3_length(db) - j->rest[k->joint];
 }
 
+// Length of a's side of the rope.
+static float pulley_side(const soft_joints *s, const joint_work *k, joint_row *r, const pose *p) {
+    core_vec3 at = core_v3_add(s->body[k->a].center, p->ra);
+    core_vec3 d = core_v3_sub(at, s->world->joints.ground_a[k->joint]);
+    core_vec3 u = phys_unit(d, core_v3(0, -1, 0));
+    memset(r->j, 0, sizeof r->j);
+    put(r->j, u);
+    put(r->j + 3, core_v3_cross(p->ra, u));
+    return core_v3_length(d);
+}
+
+// The angle of one axis of a Cardan joint about the other, which `frame` starts with; 0 at rest.
+static float cardan_angle(core_quat frame, core_vec3 other) {
+    return core_atan2f(core_v3_dot(other, axis_of(frame, 2)),
+                       core_v3_dot(other, axis_of(frame, 1)));
+}
+
 // The free coordinate and its row.
-static float coordinate(uint8_t type, joint_row *r, const pose *p) {
+static float coordinate(const soft_joints *s, const joint_work *k, joint_row *r, const pose *p) {
+    uint8_t type = k->type;
+    if (type == PHYS_JOINT_PULLEY) {
+        return pulley_side(s, k, r, p);
+    }
+    if (type == PHYS_JOINT_UNIVERSAL) {
+        angular(r, core_v3_scale(p->xa, -1.0f), p->xa);
+        return cardan_angle(p->fa, p->xb);
+    }
+    if (type == PHYS_JOINT_PIVOT) { // has a speed, that of b, but no angle
+        angular(r, core_v3(0, 0, 0), p->xb);
+        return 0.0f;
+    }
     if (type == PHYS_JOINT_PRISMATIC) {
         linear(r, p, p->xa, true);
         return core_v3_dot(p->xa, p->d);
@@ -175,7 +204,7 @@ static void hard_rows(const soft_joints *s, joint_work *k, const pose *p) {
         break;
     case PHYS_JOINT_DISTANCE:
         if (k->hard != 0) {
-            r->error = coordinate(k->type, r, p) - s->world->joints.rest[k->joint];
+            r->error = coordinate(s, k, r, p) - s->world->joints.rest[k->joint];
         }
         break;
     default:
@@ -310,7 +339,20 @@ static void spring_row(const soft_joints *s, const joint_work *k, joint_row *r,
     r->hi = -r->lo;
 }
 
+// Of a Cardan joint: the turn about b's axis, to either side.
+static joint_row *side_row(const soft_joints *s, const joint_work *k, joint_row *r, const pose *p) {
+    float angle = -cardan_angle(p->fb, p->xa), sign = angle < 0.0f ? -1.0f : 1.0f;
+    core_vec3 n = core_v3_scale(p->xb, sign);
+    angular(r, n, core_v3_scale(n, -1.0f));
+    clear_of_hard(s, k, r->j);
+    limit_row(s, r, s->world->joints.cone[k->joint] - sign * angle);
+    return r + 1;
+}
+
 static joint_row *cone_row(const soft_joints *s, const joint_work *k, joint_row *r, const pose *p) {
+    if (k->type == PHYS_JOINT_UNIVERSAL) {
+        return side_row(s, k, r, p);
+    }
     core_vec3 n = core_v3_cross(p->xa, p->xb);
     float sine = core_v3_length(n), angle = core_atan2f(sine, core_v3_dot(p->xa, p->xb));
     n = phys_unit(n, axis_of(p->fa, 1));
@@ -327,7 +369,7 @@ static void soft_rows(const soft_joints *s, joint_work *k, const pose *p) {
     if (k->soft == 0) {
         return;
     }
-    float x = coordinate(k->type, &free, p);
+    float x = coordinate(s, k, &free, p);
     clear_of_hard(s, k, free.j);
     if (j->flags[i] & PHYS_JOINT_LIMITED) {
         r = range_row(s, k, r, &free, x);
@@ -354,7 +396,7 @@ bool joint_rows_upper(const soft_joints *s, const joint_work *k) {
     const phys_joints *j = &s->world->joints;
     joint_row free;
     pose p = make_pose(s, k);
-    float x = coordinate(k->type, &free, &p);
+    float x = coordinate(s, k, &free, &p);
     return x - j->lower[k->joint] > j->upper[k->joint] - x;
 }
 
@@ -366,9 +408,10 @@ bool phys_joint_coordinate(const phys_world *w, phys_joint joint, float *out) {
     }
     uint8_t type = w->joints.type[i];
     if (type != PHYS_JOINT_DISTANCE && type != PHYS_JOINT_REVOLUTE &&
-        type != PHYS_JOINT_PRISMATIC && type != PHYS_JOINT_BALL) {
-        return core_fail("phys joint: type %d has no value, expected ball, distance, revolute or "
-                         "prismatic",
+        type != PHYS_JOINT_PRISMATIC && type != PHYS_JOINT_BALL && type != PHYS_JOINT_UNIVERSAL &&
+        type != PHYS_JOINT_PULLEY) {
+        return core_fail("phys joint: type %d has no value, expected ball, distance, revolute, "
+                         "prismatic, universal or pulley",
                          (int)type);
     }
     joint_body body[2];
@@ -383,6 +426,6 @@ bool phys_joint_coordinate(const phys_world *w, phys_joint joint, float *out) {
     joint_work k = {.joint = i, .a = 0, .b = 1, .type = type};
     pose p = make_pose(&s, &k);
     joint_row free;
-    *out = coordinate(type, &free, &p);
+    *out = coordinate(&s, &k, &free, &p);
     return true;
 }

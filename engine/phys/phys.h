@@ -464,7 +464,8 @@ typedef enum phys_joint_type {
 // Places and directions are the world's at the time of creation, which is the rest position: angle
 // 0, slide 0. The coordinate of limits, motor and spring is the angle of b against a about the axis
 // (revolute, rad, within +-pi; ball: twist), the way of b along it (prismatic, m), the distance of
-// the anchors (distance, m).
+// the anchors (distance, m), the angle of axis_b about axis (universal, rad), the length of a's
+// side (pulley, m). A pivot's motor turns b about axis_b.
 typedef struct phys_joint_desc {
     phys_joint_type type;
     phys_body a, b;
@@ -473,10 +474,11 @@ typedef struct phys_joint_desc {
     core_vec3 anchor_b;     // distance, pulley
     core_vec3 axis;         // any length > 0, default +y
     core_vec3 axis_b;       // universal, pivot; default: +x for universal, axis for pivot
-    bool limit;             // ball (twist), distance, revolute, prismatic
+    bool limit;             // ball (twist), distance, revolute, prismatic, universal, pulley
     float lower, upper;     // lower <= upper; revolute and twist within +-pi, distance >= 0
     float cone;             // ball: largest angle between the axes, (0, pi); 0: none
-    bool motor;             // distance, revolute, prismatic
+                            // universal: largest turn about axis_b to either side
+    bool motor;             // all but fixed and ball
     float motor_speed;      // m/s or rad/s
     float motor_max;        // N or N m, >= 0
     float hertz;            // spring towards `rest`, 0: none; distance, revolute, prismatic

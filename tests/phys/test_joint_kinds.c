@@ -329,6 +329,100 @@ static void test_pivot_ratio(void) {
     TEST_ASSERT_TRUE(error() < 1e-3);
 }
 
+// A box held at its side by a cross falls about one of the two axes to the end of its range.
+static void test_universal_limits(void) {
+    phys_body a = box(core_v3(0, 0, 0), core_v3(0.5f, 0.2f, 0.2f), true);
+    phys_body b = box(core_v3(1, 0, 0), core_v3(0.5f, 0.2f, 0.2f), false);
+    phys_body c = box(core_v3(1, 0, 3), core_v3(0.5f, 0.2f, 0.2f), false);
+    phys_joint_desc d = desc(PHYS_JOINT_UNIVERSAL, a, b, core_v3(0.5f, 0, 0));
+    d.axis = core_v3(0, 0, 1);
+    d.axis_b = core_v3(0, 1, 0);
+    d.limit = true;
+    d.lower = -0.5f;
+    d.upper = 0.3f;
+    phys_joint j = make(&d);
+    d = desc(PHYS_JOINT_UNIVERSAL, CORE_NULL_HANDLE, c, core_v3(0.5f, 0, 3));
+    d.axis = core_v3(0, 1, 0);
+    d.axis_b = core_v3(0, 0, 1);
+    d.cone = 0.4f;
+    make(&d);
+    float lowest = 0;
+    for (int i = 0; i < 600; i++) {
+        run(1.0f / 60.0f);
+        lowest = fminf(lowest, value_of(j));
+    }
+    core_quat q;
+    phys_body_rotation(w, c, &q);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, -0.5f, value_of(j));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, -0.4f, 2.0f * asinf(q.z));
+    TEST_ASSERT_TRUE(lowest > -0.501f);
+    TEST_ASSERT_TRUE(error() < 1e-3);
+}
+
+static void test_universal_motor(void) {
+    phys_world_set_gravity(w, core_v3(0, 0, 0));
+    phys_body b = box(core_v3(1, 0, 0), core_v3(0.5f, 0.2f, 0.2f), false);
+    phys_joint_desc d = desc(PHYS_JOINT_UNIVERSAL, CORE_NULL_HANDLE, b, core_v3(0.5f, 0, 0));
+    d.axis = core_v3(0, 0, 1);
+    d.motor = true;
+    d.motor_speed = 1.5f;
+    d.motor_max = 1e4f;
+    phys_joint j = make(&d);
+    run(1);
+    TEST_ASSERT_FLOAT_WITHIN(2e-3f, 1.5f, spin(b).z);
+    TEST_ASSERT_FLOAT_WITHIN(5e-3f, 1.5f, value_of(j));
+    TEST_ASSERT_TRUE(error() < 1e-3);
+}
+
+// The heavier side sinks until its rope is at its longest; a winch then lifts it.
+static void test_pulley_limit_and_winch(void) {
+    phys_body a = box(core_v3(0, 0, 0), core_v3(0.1f, 0.1f, 0.1f), false);
+    phys_body b = box(core_v3(1, 0, 0), core_v3(0.1f, 0.1f, 0.05f), false);
+    phys_joint_desc d = desc(PHYS_JOINT_PULLEY, a, b, core_v3(0, 0, 0));
+    d.anchor_b = core_v3(1, 0, 0);
+    d.ground_a = core_v3(0, 5, 0);
+    d.ground_b = core_v3(1, 5, 0);
+    d.limit = true;
+    d.lower = 3.0f;
+    d.upper = 5.5f;
+    phys_joint j = make(&d);
+    run(10);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 5.5f, value_of(j));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, -0.5f, position(a).y);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 0.5f, position(b).y);
+    phys_joint_set_motor(w, j, true, -0.4f, 1e4f);
+    run(2);
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, 4.7f, value_of(j));
+    run(8);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 3.0f, value_of(j));
+    TEST_ASSERT_TRUE(error() < 1e-3);
+}
+
+static void test_pivot_motor(void) {
+    phys_body a = box(core_v3(0, 0, 0), core_v3(0.2f, 0.2f, 0.1f), false);
+    phys_body b = box(core_v3(1, 0, 0), core_v3(0.1f, 0.1f, 0.1f), false);
+    phys_joint_desc d = desc(PHYS_JOINT_REVOLUTE, CORE_NULL_HANDLE, a, core_v3(0, 0, 0));
+    d.axis = core_v3(0, 0, 1);
+    make(&d);
+    d.b = b;
+    d.anchor = core_v3(1, 0, 0);
+    make(&d);
+    d = desc(PHYS_JOINT_PIVOT, a, b, core_v3(0, 0, 0));
+    d.axis = core_v3(0, 0, 1);
+    d.ratio = -0.5f;
+    d.motor = true;
+    d.motor_speed = 4;
+    d.motor_max = 100;
+    make(&d);
+    run(5);
+    TEST_ASSERT_FLOAT_WITHIN(5e-3f, 4, spin(b).z);
+    TEST_ASSERT_FLOAT_WITHIN(5e-3f, -2, spin(a).z);
+    TEST_ASSERT_TRUE(error() < 1e-3);
+    d = desc(PHYS_JOINT_PIVOT, b, CORE_NULL_HANDLE, core_v3(0, 0, 0));
+    d.motor = true;
+    TEST_ASSERT_FALSE(phys_joint_alive(w, phys_joint_create(w, &d)));
+}
+
 // A shaft bent by beta: out / in = cos beta / (1 - sin^2 beta cos^2 angle) at least and most
 // cos beta and 1 / cos beta.
 static void test_cardan_ripple(void) {
@@ -384,6 +478,10 @@ int main(void) {
     RUN_TEST(test_spring_frequency);
     RUN_TEST(test_pulley);
     RUN_TEST(test_pivot_ratio);
+    RUN_TEST(test_universal_limits);
+    RUN_TEST(test_universal_motor);
+    RUN_TEST(test_pulley_limit_and_winch);
+    RUN_TEST(test_pivot_motor);
     RUN_TEST(test_cardan_ripple);
     return UNITY_END();
 }
