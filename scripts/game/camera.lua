@@ -29,7 +29,7 @@ end
 
 -- From the gate over the court, the moon on the left.
 function camera.title(t)
-  place(1.2 + 0.5 * math.sin(0.13 * t), 1.3, 22.9, -1.6, 2.3, 12)
+  place(1.2 + 0.5 * math.sin(0.13 * t), 1.3, 22.9, -0.7, 2.2, 12)
 end
 
 function camera.ending(t)

@@ -1,6 +1,6 @@
 -- args: --steps 60
--- A storm of entities that come and go: what is alive at the end is what was kept, and memory of the
--- last half is not asked for again.
+-- A storm of entities that come and go, 102,000 in a second: what is alive at the end is what was kept,
+-- and memory of the last half is not asked for again.
 local kept, alive = {}, {}
 
 function corsac.fixed()
@@ -8,12 +8,12 @@ function corsac.fixed()
     e:destroy()
   end
   alive = {}
-  for i = 1, 500 do
+  for i = 1, 1700 do
     alive[i] = corsac.scene.spawn{ position = { i, 0, 0 }, parent = i % 7 > 0 and alive[i - 1] or nil }
   end
   -- Children die with their parents: what is left to destroy are the roots.
   local roots = {}
-  for i = 1, 500 do
+  for i = 1, 1700 do
     if i % 7 == 0 or i == 1 then
       roots[#roots + 1] = alive[i]
     end
@@ -25,6 +25,6 @@ function corsac.fixed()
   end
 end
 
-corsac.expect("counts.entities", "==", 505)
+corsac.expect("counts.entities", "==", 1705)
 corsac.expect("counts.bodies", "==", 5)
 corsac.expect("steady_allocations", "==", 0)
