@@ -67,15 +67,14 @@ bool asset_import(const char *source, const char *out_dir);
 core_image_data *asset_image_decode(const void *bytes, size_t size, const char *path,
                                     core_image_format format);
 core_image_data *asset_image_load(core_vfs *vfs, const char *path, core_image_format format);
-// WAV: PCM 8, 16, 24, 32 bit and 32-bit float; Ogg Vorbis, whose pages' checksums must agree and
-// which a child process decodes, so that no file can end the program. 1 or 2 channels,
-// 1000..192000 Hz.
 // Heights from the grey of an image, of 8 or 16 bits: black is `low`, white `high` (m), the first
 // row of the image the first along Z. 2 to 8193 pixels a side; steps are 1 m, the origin 0.
 core_heights_data *asset_heights_decode(const void *bytes, size_t size, const char *path, float low,
                                         float high);
 core_heights_data *asset_heights_load(core_vfs *vfs, const char *path, float low, float high);
-// WAV: PCM 8, 16, 24, 32 bit and 32-bit float, 1 or 2 channels, 1000..192000 Hz.
+// WAV: PCM 8, 16, 24, 32 bit and 32-bit float; Ogg Vorbis, whose pages' checksums must agree and
+// which a child process decodes, so that no file can end the program. 1 or 2 channels,
+// 1000..192000 Hz.
 core_sound_data *asset_sound_decode(const void *bytes, size_t size, const char *path);
 core_sound_data *asset_sound_load(core_vfs *vfs, const char *path);
 void *asset_sound_encode(const core_sound_data *sound, size_t *size); // 16-bit PCM WAV

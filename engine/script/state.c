@@ -146,6 +146,12 @@ static int engine_protect(lua_State *L) {
 }
 
 // near(name, table) -> '; did you mean "x"?' or ""
+// where(): "file:line: " of the innermost frame of a script, for errors of the API's own half.
+static int engine_where(lua_State *L) {
+    bind_push_where(L);
+    return 1;
+}
+
 static int engine_near(lua_State *L) {
     bind_names names = {.count = 0};
     if (lua_type(L, 1) != LUA_TSTRING) {
@@ -263,6 +269,7 @@ static const luaL_Reg shared_functions[] = {{"keys", script_order_keys},
                                             {"report", engine_report},
                                             {"protect", engine_protect},
                                             {"near", engine_near},
+                                            {"where", engine_where},
                                             {"rawmeta", engine_rawmeta},
                                             {NULL, NULL}};
 

@@ -11,12 +11,16 @@ local defaults = { -- a panel's theme changes any of these
     accent = { 0.98, 0.62, 0.22, 1 }, text = { 0.94, 0.95, 0.97, 1 }, dim = { 0.62, 0.66, 0.74, 1 },
 }
 
-local function fail(level, text, ...) error(("corsac.ui: " .. text):format(...), level + 1) end
+local function fail(text, ...) error(engine.where() .. ("corsac.ui: " .. text):format(...), 0) end
 
-local function checkFields(given, known, what, level)
-    for key in pairs(given) do
+-- known: name -> its type, "any" for values of every type.
+local function checkFields(given, known, what)
+    for key, value in pairs(given) do
         if type(key) == "string" and known[key] == nil then
-            fail(level + 1, '%s has no "%s"%s', what, key, engine.near(key, known))
+            fail('%s has no "%s"%s', what, key, engine.near(key, known))
+        end
+        if type(key) == "string" and known[key] ~= "any" and type(value) ~= known[key] then
+            fail("%s: %s: expected a %s, got %s", what, key, known[key], engine.describe(value))
         end
     end
 end
@@ -47,30 +51,30 @@ end
 
 -- Kinds of widgets: fields they take, height, what input and drawing do ---------------------------
 
-local common = { type = true, name = true, text = true }
+local common = { type = "string", name = "string", text = "any" }
 local function fields(more)
     local all = {}
-    for key in pairs(common) do all[key] = true end
-    for key in pairs(more) do all[key] = true end
+    for key, kind in pairs(common) do all[key] = kind end
+    for key, kind in pairs(more) do all[key] = kind end
     return all
 end
 
 local kinds = {}
 
 kinds.gap = {
-    fields = fields { height = true },
+    fields = fields { height = "number" },
     height = function(p, w) return w.height or p.theme.gap end,
     draw = function() end,
 }
 
 kinds.label = {
-    fields = fields { align = true },
+    fields = fields { align = "number" },
     height = function(p) return p.theme.row end,
     draw = function(p, w) write(p, w.text, w.x, middle(p, w), w.w, p.theme.dim, w.align or 0) end,
 }
 
 kinds.button = {
-    fields = fields { press = true },
+    fields = fields { press = "function" },
     focus = true,
     height = function(p) return p.theme.row end,
     activate = function(_, w) call(w.press) end,
@@ -81,11 +85,11 @@ kinds.button = {
 }
 
 kinds.toggle = {
-    fields = fields { value = true, change = true },
+    fields = fields { value = "boolean", change = "function" },
     focus = true,
     start = function(w) w.value = w.value and true or false end,
     check = function(w, value)
-        if type(value) ~= "boolean" then fail(3, '"%s" is on or off: expected a boolean', w.name) end
+        if type(value) ~= "boolean" then fail('"%s" is on or off: expected a boolean', w.name) end
         return value
     end,
     height = function(p) return p.theme.row end,
@@ -114,18 +118,19 @@ local function setSlider(w, value)
 end
 
 kinds.slider = {
-    fields = fields { min = true, max = true, step = true, value = true, change = true, format = true },
+    fields = fields { min = "number", max = "number", step = "number", value = "number", change = "function",
+        format = "string" },
     focus = true,
     start = function(w)
         w.min, w.max, w.step = w.min or 0, w.max or 1, w.step or 0
-        if w.min >= w.max then fail(4, 'slider "%s": min %g is not below max %g', w.name, w.min, w.max) end
+        if w.min >= w.max then fail('slider "%s": min %g is not below max %g', w.name, w.min, w.max) end
         local change = w.change
         w.change, w.value = nil, w.value or w.min
         setSlider(w, w.value)
         w.change = change
     end,
     check = function(w, value)
-        if type(value) ~= "number" then fail(3, '"%s": expected a number', w.name) end
+        if type(value) ~= "number" then fail('"%s": expected a number', w.name) end
         return max(w.min, min(w.max, value))
     end,
     height = function(p) return p.theme.row + 12 end,
@@ -159,11 +164,11 @@ local function select(w, index)
 end
 
 kinds.list = {
-    fields = fields { items = true, rows = true, value = true, change = true, press = true },
+    fields = fields { items = "table", rows = "number", value = "number", change = "function", press = "function" },
     focus = true,
     start = function(w)
         if type(w.items) ~= "table" or #w.items == 0 then
-            fail(4, 'list "%s" needs items, a list of texts', w.name)
+            fail('list "%s" needs items, a list of texts', w.name)
         end
         w.rows = min(w.rows or 5, #w.items)
         w.top, w.value = 1, max(1, min(#w.items, w.value or 1))
@@ -171,7 +176,7 @@ kinds.list = {
     end,
     check = function(w, value)
         if type(value) ~= "number" or not w.items[value] then
-            fail(3, '"%s": expected a place in its items, 1 to %d', w.name, #w.items)
+            fail('"%s": expected a place in its items, 1 to %d', w.name, #w.items)
         end
         return value
     end,
@@ -212,7 +217,7 @@ local function edited(w)
 end
 
 kinds.field = {
-    fields = fields { value = true, max = true, change = true, enter = true },
+    fields = fields { value = "any", max = "number", change = "function", enter = "function" },
     focus = true,
     start = function(w)
         w.max, w.letters = w.max or 32, characters(w.value or "")
@@ -422,7 +427,7 @@ end
 local function find(self, name)
     local p = state[self]
     local w = p.byName[name]
-    if not w then fail(3, 'no widget "%s"%s', tostring(name), engine.near(tostring(name), p.byName)) end
+    if not w then fail('no widget "%s"%s', tostring(name), engine.near(tostring(name), p.byName)) end
     return w, p
 end
 
@@ -436,7 +441,7 @@ end
 
 function Panel:focus(name)
     local w, p = find(self, name)
-    if not w.kind.focus then fail(2, '"%s" is a %s and takes no focus', name, w.type) end
+    if not w.kind.focus then fail('"%s" is a %s and takes no focus', name, w.type) end
     p.focused = w
 end
 
@@ -449,16 +454,18 @@ function Panel:show(on) state[self].shown, state[self].held = on and true or fal
 
 function Panel:isShown() return state[self].shown end
 
-local panelFields = { x = true, y = true, width = true, height = true, title = true, theme = true, shown = true,
-    cancel = true }
+local panelFields = { x = "number", y = "number", width = "number", height = "number", title = "string",
+    theme = "table", shown = "boolean", cancel = "function" }
+local themeFields = {}
+for key, value in pairs(defaults) do themeFields[key] = type(value) end
 
 local function newWidget(given, number)
-    if type(given) ~= "table" then fail(3, "widget %d: expected a table", number) end
+    if type(given) ~= "table" then fail("widget %d: expected a table", number) end
     local kind = kinds[given.type]
     if not kind then
-        fail(3, 'widget %d: no type "%s"%s', number, tostring(given.type), engine.near(tostring(given.type), kinds))
+        fail('widget %d: no type "%s"%s', number, tostring(given.type), engine.near(tostring(given.type), kinds))
     end
-    checkFields(given, kind.fields, ("widget %d, a %s,"):format(number, given.type), 3)
+    checkFields(given, kind.fields, ("widget %d (%s)"):format(number, given.type))
     local w = { kind = kind }
     for key, value in pairs(given) do w[key] = value end
     w.text = tostring(w.text or "")
@@ -473,15 +480,15 @@ local function newWidget(given, number)
 end
 
 lua["corsac.ui.newPanel"] = function(options)
-    checkFields(options, panelFields, "a panel", 2)
-    checkFields(options.theme or {}, defaults, "a theme", 2)
+    checkFields(options, panelFields, "a panel")
+    checkFields(options.theme or {}, themeFields, "a theme")
     local p = { theme = {}, widgets = {}, byName = {}, shown = options.shown ~= false, x = options.x, y = options.y,
         w = options.width or 360, height = options.height, title = options.title, cancel = options.cancel,
         px = -1, py = -1 }
     for key, value in pairs(defaults) do p.theme[key] = (options.theme or {})[key] or value end
     for i, given in ipairs(options) do
         local w = newWidget(given, i)
-        if p.byName[w.name] then fail(2, 'two widgets are named "%s"', w.name) end
+        if p.byName[w.name] then fail('two widgets are named "%s"', w.name) end
         p.widgets[i], p.byName[w.name] = w, w
         p.focused = p.focused or (w.kind.focus and w) or nil
     end

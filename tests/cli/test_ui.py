@@ -98,6 +98,10 @@ class Ui(SceneCase):
                            ('{ type = "list", name = "l", items = {} }', 'list "l" needs items'),
                            ('{ type = "slider", name = "s", min = 2, max = 1 }', "min 2 is not below max 1"),
                            ('theme = { acent = { 1, 1, 1 } }', 'a theme has no "acent"; did you mean "accent"?'),
+                           ('{ type = "button", press = 3 }', "widget 1 (button): press: expected a function, got the number 3"),
+                           ('{ type = "slider", min = "a" }', "min: expected a number"),
+                           ('theme = 4', "a panel: theme: expected a table, got the number 4"),
+                           ('{ type = "list", name = "l", items = {} }', "scene.lua:1: corsac.ui: list"),
                            ('widht = 3', 'a panel has no "widht"; did you mean "width"?'),
                            ('{ type = "label", name = "a" }, { type = "gap", name = "a" }', 'two widgets are named "a"')):
             with self.subTest(made):

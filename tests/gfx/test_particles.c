@@ -302,8 +302,44 @@ static void test_text_in_the_world(void) {
     }
 }
 
+// Everything that is drawn for one frame, with particles and ground: after warm-up a frame takes no
+// memory, and without any of it none of its passes and shaders exist.
+static void test_frames_allocate_nothing(void) {
+    gfx_fixture f = gfx_fixture_open(W, W, false);
+    gfx_pen pen = gfx_pen_default();
+    gfx_board_desc board = gfx_board_desc_default();
+    gfx_text_desc text = gfx_text_desc_default();
+    gfx_emitter_desc d = gfx_emitter_desc_default();
+    const float white[4] = {1, 1, 1, 1}, heights[9] = {0, 1, 0, 1, 2, 1, 0, 1, 0};
+    TEST_ASSERT_TRUE(gfx_world_set(f.world, "shadows", "off")); // their maps are kept
+    core_free(gfx_fixture_ldr(&f));
+    gfx_device_use before = gfx_device_used(f.device);
+    d.rate = 300.0f, d.spread = 1.0f;
+    gfx_emitter_create(f.world, &d);
+    gfx_terrain_desc ground = gfx_terrain_desc_default();
+    ground.heights = (core_heights_data){3, 3, 1, 1, {0, -3, 0}, heights};
+    gfx_terrain_create(f.world, &ground);
+    board.text = "board", text.text = "Text over the frame", text.font = "sans";
+    uint64_t calls = 0;
+    for (int i = 0; i < 120; ++i) {
+        calls = i == 90 ? core_alloc_count() : calls;
+        gfx_world_step(f.world, dt);
+        gfx_world_begin_frame(f.world);
+        gfx_draw_sphere(f.world, core_v3(0, 0, 0), 1, &pen);
+        gfx_draw_board(f.world, &board);
+        gfx_text(f.world, &text);
+        gfx_round_rect(f.world, 1, 2, 30, 20, 4, 0, white);
+        TEST_ASSERT_TRUE_MESSAGE(gfx_device_render(f.device, f.world), core_last_error());
+    }
+    TEST_ASSERT_EQUAL_UINT64(calls, core_alloc_count());
+    gfx_device_use after = gfx_device_used(f.device);
+    TEST_ASSERT_EQUAL_UINT32(before.passes + 3, after.passes); // boards, lines, 2D
+    gfx_fixture_close(&f);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_frames_allocate_nothing);
     RUN_TEST(test_the_way_solves_the_equation_of_motion);
     RUN_TEST(test_births_and_deaths_keep_the_rate);
     RUN_TEST(test_a_moving_source_leaves_an_even_trail);
