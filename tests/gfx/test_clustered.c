@@ -121,6 +121,33 @@ static void test_views(void) {
     gfx_fixture_close(&f);
 }
 
+// Four views share a frame, each with lists of its own: byte for byte the same picture.
+static void test_several_views_of_a_frame(void) {
+    gfx_fixture f = open_scene(97, 61, 150, 6.0f);
+    const core_vec3 eyes[4] = {{0, 4, 24}, {20, 2, 0}, {0, 30, 0.01f}, {-3, 1, 4}};
+    for (int i = 0; i < 4; ++i) {
+        gfx_viewport_desc d = gfx_viewport_desc_default();
+        gfx_look(f.world, eyes[i], core_v3(0, 0, 0));
+        d.camera = gfx_world_camera(f.world);
+        d.camera.ortho_height = i == 2 ? 40.0f : 0.0f;
+        d.rect[0] = 0.5f * (float)(i % 2), d.rect[1] = 0.5f * (float)(i / 2);
+        d.rect[2] = d.rect[3] = 0.5f;
+        TEST_ASSERT_FALSE(core_handle_is_null(gfx_viewport_create(f.world, &d)));
+    }
+    set(&f, "render", "forward");
+    uint8_t *forward = gfx_fixture_ldr(&f);
+    const char *const methods[] = {"naive", "per_light", "simd", "gpu"};
+    set(&f, "render", "clustered");
+    for (size_t m = 0; m < CORE_COUNT_OF(methods); ++m) {
+        set(&f, "assign", methods[m]);
+        uint8_t *clustered = gfx_fixture_ldr(&f);
+        TEST_ASSERT_EQUAL_UINT8_ARRAY(forward, clustered, (size_t)97 * 61 * 4);
+        core_free(clustered);
+    }
+    core_free(forward);
+    gfx_fixture_close(&f);
+}
+
 // The camera stands inside several lights.
 static void test_camera_inside_lights(void) {
     gfx_fixture f = open_scene(64, 36, 40, 5.0f);
@@ -238,6 +265,7 @@ int main(void) {
     RUN_TEST(test_methods_slices_and_grids);
     RUN_TEST(test_odd_sizes);
     RUN_TEST(test_views);
+    RUN_TEST(test_several_views_of_a_frame);
     RUN_TEST(test_camera_inside_lights);
     RUN_TEST(test_overflow_falls_back);
     RUN_TEST(test_auto);
