@@ -3,16 +3,17 @@
 #include "gfx/gfx_lab_picture.h"
 
 #include "core/math.h"
+#include "core/memory.h"
 
 #include <stdio.h>
 
-enum { SIDE = 160, RAYS = 256, STEP = 2 };
+enum { SIDE = 160, RAYS = 128, STEP = 2 };
 static const float span = 8.0f; // m of ground across the picture, seen from above
 static const core_vec3 cube = {-0.6f, 0.5f, 0.1f};
 
 typedef struct sun {
-    core_vec3 to, side, up;
-    float source; // tangent of the disk's angular radius
+    core_vec3 to, ray[RAYS]; // to its centre, to points of its disk
+    float source;            // tangent of the disk's angular radius
 } sun;
 
 static float ground(int pixel) { return ((float)pixel + 0.5f) / SIDE * span - 0.5f * span; }
@@ -33,10 +34,7 @@ static bool meets_cube(core_vec3 p, core_vec3 d) {
 static float visible(const sun *s, float x, float z) {
     int lit = 0;
     for (int i = 0; i < RAYS; ++i) {
-        float r = s->source * core_sqrtf(((float)i + 0.5f) / RAYS), a = 2.39996323f * (float)i;
-        core_vec3 d =
-            core_v3_mad(core_v3_mad(s->to, s->side, r * core_cosf(a)), s->up, r * core_sinf(a));
-        lit += !meets_cube(core_v3(x, 0.0f, z), d);
+        lit += !meets_cube(core_v3(x, 0.0f, z), s->ray[i]);
     }
     return (float)lit / RAYS;
 }
@@ -45,9 +43,29 @@ static sun sun_of(const core_lab_case *c) {
     float e = (float)core_lab_number(c, "elevation", 55) * CORE_PI_F / 180.0f, a = 0.3f;
     sun s = {.to = {-core_cosf(e) * core_cosf(a), core_sinf(e), -core_cosf(e) * core_sinf(a)},
              .source = (float)core_lab_number(c, "source", 0.00465)};
-    s.side = core_v3_normalize(core_v3_cross(s.to, core_v3(0, 0, 1)), core_v3(1, 0, 0));
-    s.up = core_v3_cross(s.side, s.to);
+    core_vec3 side = core_v3_normalize(core_v3_cross(s.to, core_v3(0, 0, 1)), core_v3(1, 0, 0));
+    core_vec3 up = core_v3_cross(side, s.to);
+    for (int i = 0; i < RAYS; ++i) {
+        float r = s.source * core_sqrtf(((float)i + 0.5f) / RAYS), turn = 2.39996323f * (float)i;
+        core_vec3 off =
+            core_v3_mad(core_v3_scale(side, r * core_cosf(turn)), up, r * core_sinf(turn));
+        s.ray[i] = core_v3_add(s.to, off);
+    }
     return s;
+}
+
+// What is all lit or all dark: there and 0.2 m round.
+static bool is_all(const sun *s, float x, float z, float what) {
+    return visible(s, x + 0.2f, z) == what && visible(s, x - 0.2f, z) == what &&
+           visible(s, x, z + 0.2f) == what && visible(s, x, z - 0.2f) == what;
+}
+
+// Values 0..1 as a text of two hexadecimal digits each.
+static void put(char *text, int at, float value) {
+    static const char digits[] = "0123456789abcdef";
+    int byte = (int)(CORE_CLAMP(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+    text[2 * at] = digits[byte >> 4];
+    text[2 * at + 1] = digits[byte & 15];
 }
 
 static bool set_number(gfx_world *world, const char *name, double value) {
@@ -81,35 +99,45 @@ static bool set_up(gfx_world *world, const core_lab_case *c, const sun *s) {
 }
 
 // rms: of the visibility, over the ground. acne: part of the fully lit ground that is dark. leaks:
-// part of the ground in full shadow that is lit. Both only where rays agree within 0.2 m round.
+// part of the ground in full shadow that is lit. got, want: every second pixel of every second row,
+// for judges of pictures.
 static void judge(const gfx_lab_picture *p, const sun *s, core_json *out) {
+    enum { COLUMNS = SIDE / STEP };
+    char *got_text = core_alloc(2 * COLUMNS * COLUMNS + 1);
+    char *want_text = core_alloc(2 * COLUMNS * COLUMNS + 1);
     float open = 0.0f;
     for (int i = 0; i < SIDE * SIDE; ++i) {
         open = CORE_MAX(open, p->rgba[4 * i]);
     }
     double squares = 0.0;
     uint32_t all = 0, lit = 0, dark = 0, acne = 0, leaks = 0;
-    for (int y = 0; y < SIDE; y += STEP) {
-        for (int x = 0; x < SIDE; x += STEP) {
-            float gx = ground(x), gz = ground(y);
-            if (core_absf(gx - cube.x) < 0.55f && core_absf(gz - cube.z) < 0.55f) {
-                continue; // the cube hides it
-            }
-            float want = visible(s, gx, gz), got = p->rgba[4 * (y * SIDE + x)] / open;
-            squares += (double)((got - want) * (got - want));
-            all++;
-            float round = 0.25f * (visible(s, gx + 0.2f, gz) + visible(s, gx - 0.2f, gz) +
-                                   visible(s, gx, gz + 0.2f) + visible(s, gx, gz - 0.2f));
-            bool is_lit = want == 1.0f && round == 1.0f, is_dark = want == 0.0f && round == 0.0f;
-            lit += is_lit;
-            acne += is_lit && got < 0.9f;
-            dark += is_dark;
-            leaks += is_dark && got > 0.1f;
+    for (int i = 0; i < COLUMNS * COLUMNS; ++i) {
+        int x = i % COLUMNS * STEP, y = i / COLUMNS * STEP;
+        float gx = ground(x), gz = ground(y);
+        put(got_text, i, 0.0f);
+        put(want_text, i, 0.0f);
+        if (core_absf(gx - cube.x) < 0.55f && core_absf(gz - cube.z) < 0.55f) {
+            continue; // the cube hides it
         }
+        float want = visible(s, gx, gz), got = p->rgba[4 * (y * SIDE + x)] / open;
+        put(got_text, i, got);
+        put(want_text, i, want);
+        squares += (double)((got - want) * (got - want));
+        all++;
+        bool is_lit = want == 1.0f && is_all(s, gx, gz, 1.0f);
+        bool is_dark = want == 0.0f && is_all(s, gx, gz, 0.0f);
+        lit += is_lit;
+        acne += is_lit && got < 0.9f;
+        dark += is_dark;
+        leaks += is_dark && got > 0.1f;
     }
     core_json_number(out, "rms", core_sqrt(squares / all));
     core_json_number(out, "acne", (double)acne / CORE_MAX(lit, 1u));
     core_json_number(out, "leaks", (double)leaks / CORE_MAX(dark, 1u));
+    core_json_string(out, "got", got_text);
+    core_json_string(out, "want", want_text);
+    core_free(got_text);
+    core_free(want_text);
 }
 
 static bool run_shadow(const core_lab_case *c, core_json *out) {

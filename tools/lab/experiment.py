@@ -15,7 +15,7 @@ seeds, repeats        of accuracy and of timing
 [chart]               panel = sweep name (one panel each), line = "method" (default), x, y
 [[expect]]            assertions, see judge.py
 [map]                 a stability map, see maps.py
-reference             name in references.py: adds figures by a known answer
+reference             name in references.py: adds figures by a known answer or another judge
 stated                [{x, y, text}]: figures that others state, drawn as stars on a line chart
 [binaries]            NAME = path of another build; a method takes it by `binary = NAME`
 """

@@ -4,6 +4,7 @@
 and figures.
 """
 
+import functools
 import math
 
 
@@ -93,7 +94,70 @@ def motion(params, found):
     return {"projectile": projectile, "spring": spring, "orbit": orbit, "top": top}[params["problem"]](params, found)
 
 
-JUDGES = {"motion": motion}
+def grey(text):
+    """A square picture from two hexadecimal digits a pixel."""
+    import numpy
+    values = numpy.frombuffer(bytes.fromhex(text), numpy.uint8).astype(numpy.float32) / 255
+    side = math.isqrt(len(values))
+    return values.reshape(side, side)
+
+
+def flip(found):
+    """Mean perceived difference of the pictures (Andersson and others, "FLIP", 2020) where the package
+    flip-evaluator is in build/venv."""
+    try:
+        import flip_evaluator
+        import numpy
+    except ImportError:
+        return {}
+    want, got = (numpy.repeat(grey(found[k])[:, :, None], 3, axis=2) for k in ("want", "got"))
+    return {"flip": float(flip_evaluator.evaluate(want, got, "LDR")[1])}
+
+
+@functools.cache
+def traced_shadow(elevation, source, side):
+    """The scene of gfx.shadow by the path tracer Mitsuba, where that package is in build/venv: the share
+    of the sun that the ground sees. None without it."""
+    try:
+        import mitsuba
+        import numpy
+    except ImportError:
+        return None
+    mitsuba.set_variant("scalar_rgb")
+    place = mitsuba.ScalarTransform4f
+    e = math.radians(elevation)
+    sun = [-math.cos(e) * math.cos(0.3), math.sin(e), -math.cos(e) * math.sin(0.3)]
+    ground = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 1.0}}
+    scene = {
+        "type": "scene", "integrator": {"type": "direct"},
+        "sensor": {"type": "orthographic", "near_clip": 0.1, "far_clip": 100,
+                   "to_world": place().look_at(origin=[0, 20, 0], target=[0, 0, 0], up=[0, 0, -1]) @ place().scale([4, 4, 1]),
+                   "film": {"type": "hdrfilm", "width": side, "height": side, "rfilter": {"type": "box"}},
+                   "sampler": {"type": "multijitter", "sample_count": 144}},
+        "sun": {"type": "disk", "emitter": {"type": "area", "radiance": {"type": "rgb", "value": 1.0}},
+                "to_world": place().look_at(origin=[1000 * c for c in sun], target=[0, 0, 0], up=[0, 0, 1]) @
+                place().scale(1000 * source)},
+        "ground": {"type": "rectangle", "to_world": place().rotate([1, 0, 0], -90) @ place().scale(20), "bsdf": ground},
+    }
+    open_ground = numpy.array(mitsuba.render(mitsuba.load_dict(scene)))[:, :, 0]
+    scene["cube"] = {"type": "cube", "to_world": place().translate([-0.6, 0.5, 0.1]) @ place().scale(0.5), "bsdf": ground}
+    return numpy.array(mitsuba.render(mitsuba.load_dict(scene)))[:, :, 0] / open_ground
+
+
+def shadow(params, found):
+    """FLIP of the picture, and the rms of the engine's and the rays' visibility from the path tracer's,
+    off the cube's edges."""
+    figures = flip(found)
+    got, want = grey(found["got"]), grey(found["want"])
+    traced = traced_shadow(params.get("elevation", 55), params["source"], len(got))
+    if traced is not None:
+        seen = (want > 0) | (got > 0)
+        for name, picture in (("traced_rms", got), ("rays_traced_rms", want)):
+            figures[name] = float(((picture - traced)[seen] ** 2).mean() ** 0.5)
+    return figures
+
+
+JUDGES = {"motion": motion, "shadow": shadow}
 
 
 def judge(name, params, figures):
