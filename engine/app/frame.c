@@ -58,7 +58,7 @@ bool app_frame(app_run *r, float alpha) {
     r->report.shader_variants = use.shader_variants;
     const gfx_pass_use *pass = gfx_device_passes(r->device, &r->report.pass_count);
     memcpy(r->report.pass, pass, r->report.pass_count * sizeof *pass);
-    return ok || app_fail(r, APP_EXIT_ENVIRONMENT);
+    return ok || app_fail(r, APP_EXIT_SCRIPT); // a shader or picture of the game
 }
 
 static bool shot_due(const app_run *r, const app_shot *shot, uint64_t step) {

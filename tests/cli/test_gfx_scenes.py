@@ -150,6 +150,12 @@ class GfxScenes(SceneCase):
                           env={name: "/nonexistent"})
             self.assert_exit(done, 5, "install libegl-mesa0")
 
+    def test_an_absent_panorama_ends_the_run(self):
+        scene = self.dir / "absent.lua"
+        scene.write_text("function corsac.load() corsac.gfx.setEnvironment{panorama = 'none.hdr'} end")
+        done = corsac("run", scene, *SMALL, "--steps", 1, "--shot", self.dir / "none.png")
+        self.assert_exit(done, 1, "none.hdr")
+
     def test_same_bytes_over_runs_and_threads(self):
         pictures = set()
         for threads in ("0", "1", "2"):
