@@ -371,6 +371,11 @@ anim_goal_desc anim_goal_desc_default(anim_goal_kind kind);
 bool anim_instance_set_goal(anim_world *world, anim_instance instance, uint32_t goal,
                             const anim_goal_desc *desc);
 
+// A pose from outside (a ragdoll's) laid over everything else with a weight in [0, 1]. NULL: the
+// pose given last, with another weight; weight 0 drops it.
+bool anim_instance_set_external(anim_world *world, anim_instance instance, const anim_pose *pose,
+                                float weight);
+
 // Local pose of this moment, evaluated now.
 bool anim_instance_pose(anim_world *world, anim_instance instance, anim_pose out);
 // Palette of the last anim_world_pose: bone_count * ANIM_PALETTE_FLOATS floats, valid until the

@@ -177,6 +177,8 @@ enum { ANIM_HIDDEN = 1, ANIM_DOOMED = 2 };
     X(float, root_y, CORE_COLUMN_STATE)                                                            \
     X(float, root_z, CORE_COLUMN_STATE)                                                            \
     X(uint32_t, flags, CORE_COLUMN_STATE)                                                          \
+    X(core_handle, external, CORE_COLUMN_STATE) /* pose given from outside; null: none */          \
+    X(float, external_weight, CORE_COLUMN_STATE)                                                   \
     X(uint64_t, user, 0)                                                                           \
     X(uint32_t, place, 0)    /* first bone in the palette range */                                 \
     X(uint32_t, posed, 0)    /* palette holds a pose */                                            \

@@ -48,7 +48,8 @@ static group describe(const anim_world *w, uint32_t row) {
     uint32_t s = core_columns_row(&w->skeletons.set, w->instances.skeleton[row]);
     group g = {.skeleton = w->skeletons.item[s]};
     g.whole = w->instances.layered[row] || w->instances.goal_count[row] ||
-              is_tree(w, p, &w->players.now[p]) || is_tree(w, p, &w->players.from[p]);
+              w->instances.external_weight[row] > 0 || is_tree(w, p, &w->players.now[p]) ||
+              is_tree(w, p, &w->players.from[p]);
     if (g.whole) {
         return g;
     }

@@ -327,7 +327,7 @@ double anim_world_error_max(anim_world *w, uint32_t sample) {
     double worst = 0;
     for (uint32_t row = 0; row < count && (!sample || looked < sample); row += stride) {
         if (!w->instances.posed[row] || w->instances.layered[row] || w->instances.goal_count[row] ||
-            (w->instances.flags[row] & ANIM_HIDDEN)) {
+            w->instances.external_weight[row] > 0 || (w->instances.flags[row] & ANIM_HIDDEN)) {
             continue;
         }
         size_t mark = core_arena_mark(arena);

@@ -124,6 +124,40 @@ void anim_evaluate(anim_world *w, uint32_t row, core_arena *arena, float *out) {
     if (w->instances.goal_count[row]) {
         anim_goals_apply(s, &w->instances.goals[row], out);
     }
+    if (w->instances.external_weight[row] > 0) {
+        size_t mark = core_arena_mark(arena);
+        float *external = anim_scratch_pose(arena, s);
+        anim_snapshot_read(w, w->instances.external[row], s, external);
+        anim_columns_blend(out, external, w->instances.external_weight[row], s->stride, out);
+        core_arena_rewind(arena, mark);
+    }
+}
+
+bool anim_instance_set_external(anim_world *w, anim_instance h, const anim_pose *pose,
+                                float weight) {
+    uint32_t row = anim_get_instance(w, h);
+    if (row == CORE_NO_ROW) {
+        return false;
+    }
+    if (!(weight >= 0 && weight <= 1)) {
+        return core_fail("anim_instance_set_external: weight %g, expected 0..1", weight);
+    }
+    const anim_skeleton_res *s = anim_get_skeleton(w, w->instances.skeleton[row]);
+    if (pose || weight == 0) {
+        anim_snapshot_drop(w, w->instances.external[row]);
+        w->instances.external[row] = CORE_NULL_HANDLE;
+    }
+    if (pose && weight > 0) {
+        core_arena *arena = anim_scratch(w, 0);
+        size_t mark = core_arena_mark(arena);
+        float *columns = anim_scratch_pose(arena, s);
+        anim_columns_from_pose(*pose, s->bones, s->stride, columns);
+        w->instances.external[row] = anim_snapshot_take(w, s, columns);
+        core_arena_rewind(arena, mark);
+    }
+    bool there = !core_handle_is_null(w->instances.external[row]);
+    w->instances.external_weight[row] = there ? weight : 0;
+    return there || weight == 0;
 }
 
 float *anim_palette_of(const anim_world *w, uint32_t row) {

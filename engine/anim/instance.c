@@ -141,6 +141,7 @@ void anim_instance_remove(anim_world *w, uint32_t row) {
     for (uint32_t i = 0; i < ANIM_MAX_LAYERS; i++) {
         anim_player_remove(w, w->instances.layer[row].player[i]);
     }
+    anim_snapshot_drop(w, w->instances.external[row]);
     anim_give_place(s, w->instances.place[row]);
     s->users--;
     w->bones_live -= s->bones;

@@ -56,6 +56,7 @@ static bool player_stands(const anim_world *w, uint32_t p) {
 
 // A frozen pose is as many rows as its skeleton needs, and no chain of rows goes in a circle.
 static bool chunks_stand(const anim_world *w, core_handle h, const anim_skeleton_res *s) {
+    bool none = core_handle_is_null(h);
     uint32_t rows = s->stride / CORE_LANES;
     for (; !core_handle_is_null(h) && rows > 0; rows--) {
         uint32_t row = core_columns_row(&w->chunks.set, h);
@@ -64,7 +65,13 @@ static bool chunks_stand(const anim_world *w, core_handle h, const anim_skeleton
         }
         h = w->chunks.next[row];
     }
-    return core_handle_is_null(h);
+    return core_handle_is_null(h) && (none || rows == 0);
+}
+
+static bool goal_stands(const anim_skeleton_res *s, const anim_goal *g) {
+    bool limb = g->kind == ANIM_GOAL_REACH || g->kind == ANIM_GOAL_SHIFT;
+    return g->kind <= ANIM_GOAL_MOVE && g->bone < s->bones &&
+           (!limb || (s->parent[g->bone] >= 0 && s->parent[s->parent[g->bone]] >= 0));
 }
 
 static bool instance_stands(const anim_world *w, uint32_t i) {
@@ -91,12 +98,12 @@ static bool instance_stands(const anim_world *w, uint32_t i) {
         }
     }
     for (uint32_t g = 0; g < ANIM_MAX_GOALS; g++) {
-        const anim_goal *goal = &c->goals[i].goal[g];
-        if (goal->weight > 0 && goal->bone >= s->bones) {
+        if (c->goals[i].goal[g].weight > 0 && !goal_stands(s, &c->goals[i].goal[g])) {
             return false;
         }
     }
-    return true;
+    bool external = !core_handle_is_null(c->external[i]);
+    return chunks_stand(w, c->external[i], s) && (external || !(c->external_weight[i] > 0));
 }
 
 static bool enter(anim_world *w, core_stream *s) {

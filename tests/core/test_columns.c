@@ -253,10 +253,10 @@ static void rows_and_handles_must_agree(void) {
 }
 
 static void saves_of_other_columns_are_refused(void) {
-    static const core_column other_columns[] = {{"mass", 4, CORE_COLUMN_STATE},
-                                                {"place", 12, CORE_COLUMN_STATE},
-                                                {"kind", 1, CORE_COLUMN_STATE},
-                                                {"key", 8, CORE_COLUMN_STATE}};
+    static const core_column other_columns[] = {{"mass", 4, CORE_COLUMN_STATE, 0},
+                                                {"place", 12, CORE_COLUMN_STATE, 0},
+                                                {"kind", 1, CORE_COLUMN_STATE, 0},
+                                                {"key", 8, CORE_COLUMN_STATE, 0}};
     core_columns other;
     TEST_ASSERT_TRUE(core_columns_init(&other, "test.things", other_columns, 4, 100));
     core_columns_add(&other);
