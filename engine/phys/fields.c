@@ -131,3 +131,23 @@ core_vec3 phys_field_pull(const phys_world *w, core_vec3 at, uint32_t row) {
     phys_spent_end(&w->spent->fields, begin, TIMED);
     return a;
 }
+
+void phys_world_set_force(phys_world *w, phys_force_fn *force, void *ctx) {
+    w->force = force;
+    w->force_ctx = ctx;
+    w->measured = false;
+    phys_wake_all(w);
+}
+
+bool phys_pulled(const phys_world *w) {
+    return core_columns_count(&w->fields.set) != 0 || w->force != NULL;
+}
+
+core_vec3 phys_pull(const phys_world *w, core_vec3 at, core_vec3 velocity, float time,
+                    uint32_t row) {
+    core_vec3 a = core_v3(0, 0, 0);
+    if (core_columns_count(&w->fields.set) != 0) {
+        a = phys_field_pull(w, at, row);
+    }
+    return w->force != NULL ? core_v3_add(a, w->force(w->force_ctx, at, velocity, time)) : a;
+}

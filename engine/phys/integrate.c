@@ -16,7 +16,7 @@ static void half_turn(float x, float *s, float *c) {
 void phys_integrate_velocity(phys_world *w, float h) {
     phys_bodies *b = &w->bodies;
     uint32_t n = core_columns_count(&b->set);
-    bool fields = core_columns_count(&w->fields.set) != 0;
+    bool fields = phys_pulled(w);
     for (uint32_t i = 0; i < n; i++) {
         if (b->type[i] != PHYS_DYNAMIC) {
             continue;
@@ -25,7 +25,8 @@ void phys_integrate_velocity(phys_world *w, float h) {
         a = core_v3_mad(a, b->force[i], b->im[i]);
         if (fields) { // of the present place: with the new velocity this stays symplectic
             core_vec3 at = phys_get3(b->cx, b->cy, b->cz, i);
-            a = core_v3_add(a, phys_field_pull(w, at, i));
+            core_vec3 v = phys_get3(b->vx, b->vy, b->vz, i);
+            a = core_v3_add(a, phys_pull(w, at, v, (float)w->time, i));
         }
         core_vec3 v = core_v3_mad(phys_get3(b->vx, b->vy, b->vz, i), a, h);
         core_vec3 o = phys_get3(b->wx, b->wy, b->wz, i);
@@ -186,13 +187,17 @@ typedef struct pull {
 } pull;
 
 static core_vec3 acceleration(void *ctx, core_vec3 p, core_vec3 v, float t) {
-    (void)t;
     const pull *f = ctx;
     const phys_bodies *b = &f->world->bodies;
     core_vec3 a = core_v3_scale(f->world->gravity, b->gravity_scale[f->row]);
     a = core_v3_mad(a, b->force[f->row], b->im[f->row]);
-    a = core_v3_add(a, phys_field_pull(f->world, p, f->row));
+    a = core_v3_add(a, phys_pull(f->world, p, v, t, f->row));
     return core_v3_mad(a, v, -b->linear_damping[f->row]);
+}
+
+const phys_integrator *phys_integrator_of(const phys_world *w, uint32_t i) {
+    bool constant = !phys_pulled(w) && w->bodies.linear_damping[i] == 0.0f;
+    return w->auto_integrator && constant ? NULL : w->integrator;
 }
 
 void phys_integrate_free(phys_world *w, uint32_t i, float dt, int substeps) {
@@ -204,7 +209,8 @@ void phys_integrate_free(phys_world *w, uint32_t i, float dt, int substeps) {
                      .w = phys_get3(b->wx, b->wy, b->wz, i),
                      .inertia = {1.0f / b->ix[i], 1.0f / b->iy[i], 1.0f / b->iz[i]}};
     for (int k = 0; k < substeps; k++) {
-        w->integrator->step(&m, acceleration, &f, 0.0f, dt / (float)substeps);
+        float h = dt / (float)substeps;
+        w->integrator->step(&m, acceleration, &f, (float)w->time + (float)k * h, h);
     }
     phys_put3(b->cx, b->cy, b->cz, i, m.p);
     phys_put3(b->vx, b->vy, b->vz, i, m.v);

@@ -54,8 +54,10 @@ void phys_world_set_gravity(phys_world *world, core_vec3 g);
 core_vec3 phys_world_gravity(const phys_world *world);
 // Settings by name ("solver", "broad", "substeps", "iterations", ...): what --set phys.NAME=VALUE
 // reaches. "friction", "restitution": how two materials become one: product, geometric (the default
-// of friction), average, least, most (the default of restitution). False + core_fail naming the
-// nearest name or the allowed values.
+// of friction), average, least, most (the default of restitution). "integrator": of bodies that
+// touch nothing and hang on nothing; "auto" takes, body by body, the exact term under constant
+// forces and rk4 where there are fields, functions or drag. False + core_fail naming the nearest
+// name or the allowed values.
 bool phys_world_set(phys_world *world, const char *name, const char *value);
 // NULL-terminated list of names for a method kind: "solver", "broad", "narrow", "integrator".
 const char *const *phys_method_names(const char *kind);
@@ -240,6 +242,11 @@ phys_field_desc phys_field_desc_default(phys_field_type type);
 phys_field phys_field_create(phys_world *world, const phys_field_desc *desc);
 bool phys_field_destroy(phys_world *world, phys_field field);
 bool phys_field_alive(const phys_world *world, phys_field field);
+// Acceleration (m/s^2) of dynamic bodies beside gravity and fields: a function of the centre of
+// mass's place and velocity, and of the time since the world was made (s). Called several times a
+// step, from several threads at once: it must give the same for the same arguments. NULL: none.
+typedef core_vec3 phys_force_fn(void *ctx, core_vec3 position, core_vec3 velocity, float time);
+void phys_world_set_force(phys_world *world, phys_force_fn *force, void *ctx);
 
 // ---- questions between steps: they change nothing ----
 typedef struct phys_filter {

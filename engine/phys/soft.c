@@ -67,7 +67,7 @@ typedef struct soft {
     bool bounces;
     uint32_t level;
     int substeps;
-    float dt, h;
+    float dt, h, now; // now: time of the substep
 } soft;
 
 static soft_spring make_spring(float h, float stiffness) {
@@ -105,13 +105,17 @@ static void lock_inertia(uint8_t locks, float *out) {
     }
 }
 
-static core_vec3 pull_on(const phys_world *w, uint32_t i, const float *moved) {
+static core_vec3 pull_on(const soft *s, uint32_t k) {
+    const phys_world *w = s->world;
     const phys_bodies *b = &w->bodies;
+    uint32_t i = s->body[k];
     core_vec3 a = core_v3_scale(w->gravity, b->gravity_scale[i]);
     a = core_v3_mad(a, b->force[i], b->im[i]);
-    if (core_columns_count(&w->fields.set) != 0) {
+    if (phys_pulled(w)) {
+        const float *moved = s->bodies.moved + (size_t)k * 8;
+        const float *v = s->bodies.velocity + (size_t)k * 8;
         core_vec3 at = core_v3(b->cx[i] + moved[0], b->cy[i] + moved[1], b->cz[i] + moved[2]);
-        a = core_v3_add(a, phys_field_pull(w, at, i));
+        a = core_v3_add(a, phys_pull(w, at, core_v3(v[0], v[1], v[2]), s->now, i));
     }
     return a;
 }
@@ -131,7 +135,7 @@ static void fill_body(soft *s, uint32_t k) {
     }
     fill_inertia(b, i, s->bodies.inertia + (size_t)k * 8);
     lock_inertia(b->locks[i], s->bodies.inertia + (size_t)k * 8);
-    core_vec3 a = core_v3_scale(pull_on(s->world, i, s->bodies.moved + (size_t)k * 8), s->h);
+    core_vec3 a = core_v3_scale(pull_on(s, k), s->h);
     memcpy(p, &a, sizeof a);
     core_vec3 t = b->torque[i];
     if (t.x != 0.0f || t.y != 0.0f || t.z != 0.0f) {
@@ -533,7 +537,7 @@ static void refresh_fields(soft *s) {
     const phys_bodies *b = &s->world->bodies;
     for (uint32_t k = 0; k < s->bodies.count; k++) {
         if (b->type[s->body[k]] == PHYS_DYNAMIC) {
-            core_vec3 a = pull_on(s->world, s->body[k], s->bodies.moved + (size_t)k * 8);
+            core_vec3 a = pull_on(s, k);
             a = core_v3_scale(a, s->h);
             memcpy(s->bodies.push + (size_t)k * 8, &a, sizeof a);
         }
@@ -550,7 +554,8 @@ static void finish_body(soft *s, uint32_t k) {
         return; // every level carries the kinematic bodies along; one moves them
     }
     bool free = b->touching[i] == 0 && (s->joints == NULL || !s->joints->jointed[k]);
-    if (free && b->type[i] == PHYS_DYNAMIC && w->integrator != NULL && b->locks[i] == 0) {
+    if (free && b->type[i] == PHYS_DYNAMIC && phys_integrator_of(w, i) != NULL &&
+        b->locks[i] == 0) {
         phys_integrate_free(w, i, s->dt, s->substeps);
         return;
     }
@@ -598,9 +603,10 @@ static bool first_touch(const soft *s) {
 
 static void solve_substeps(soft *s, int substeps) {
     int extra = first_touch(s) ? FIRST_TOUCH_PASSES : 0;
-    bool fields = core_columns_count(&s->world->fields.set) != 0;
+    bool fields = phys_pulled(s->world);
     for (int k = 0; k < substeps; k++) {
         if (fields && k > 0) {
+            s->now = (float)s->world->time + (float)k * s->h;
             refresh_fields(s);
         }
         turn_tops(s);
@@ -678,6 +684,7 @@ static void step_level(phys_world *w, float dt, uint32_t level) {
     soft s = {
         .world = w, .dt = dt, .h = dt / (float)substeps, .level = level, .substeps = substeps};
     float stiffness = level == PHYS_LEVEL_DEFAULT ? STIFFNESS : STIFFNESS_HARD;
+    s.now = (float)w->time;
     s.spring = make_spring(s.h, stiffness);
     s.spring_fixed = make_spring(s.h, 2.0f * stiffness);
     s.run_balls = CORE_SIMD_SELECT(phys_soft_balls);

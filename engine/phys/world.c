@@ -18,7 +18,8 @@ phys_world_desc phys_world_desc_default(void) {
 const char *const *phys_method_names(const char *kind) {
     static const char *const solver[] = {"soft", "sequential", "impulse", NULL};
     static const char *const broad[] = {"auto", "tree", "sap", "brute", NULL};
-    static const char *const integrator[] = {"exact", "semi", "euler", "verlet", "rk4", NULL};
+    static const char *const integrator[] = {"exact",  "auto", "semi", "euler",
+                                             "verlet", "rk4",  NULL};
     static const char *const none[] = {NULL};
     if (strcmp(kind, "integrator") == 0) {
         return integrator;
@@ -206,9 +207,12 @@ bool phys_world_set(phys_world *w, const char *name, const char *value) {
         return set_int(name, value, 0, 256, &w->iterations);
     }
     if (strcmp(name, "integrator") == 0) {
-        bool exact = strcmp(value, "exact") == 0;
-        const phys_integrator *found = exact ? NULL : phys_integrator_find(value);
-        w->integrator = exact || found != NULL ? found : w->integrator;
+        bool exact = strcmp(value, "exact") == 0, fitting = strcmp(value, "auto") == 0;
+        const phys_integrator *found = exact ? NULL : phys_integrator_find(fitting ? "rk4" : value);
+        if (exact || found != NULL) {
+            w->integrator = found;
+            w->auto_integrator = fitting;
+        }
         return exact || found != NULL;
     }
     if (strcmp(name, "sleep") == 0) {

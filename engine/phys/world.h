@@ -330,9 +330,12 @@ struct phys_world {
     bool pairs_stale; // layers or rules changed: every pair is to be asked again
     uint32_t *order;  // sweep order of shape rows, kept between steps
     uint32_t order_count, order_capacity;
-    core_arena scratch;                    // of one step
-    uint32_t stamp;                        // number of the broad phase, marks living pairs
-    const phys_integrator *integrator;     // of bodies that touch nothing; NULL: the solver's own
+    core_arena scratch;                // of one step
+    uint32_t stamp;                    // number of the broad phase, marks living pairs
+    const phys_integrator *integrator; // of bodies that touch nothing; NULL: the solver's own
+    bool auto_integrator;              // that one only where forces are not constant
+    phys_force_fn *force;              // NULL: none
+    void *force_ctx;
     uint8_t mix_friction, mix_restitution; // rules of material.c
     bool sleep;
     uint32_t layers;                     // bit per layer that some body with a shape is in
@@ -547,6 +550,12 @@ void phys_events_contact_end(phys_world *world, phys_event_list *list, uint32_t 
 core_vec3 phys_field_acceleration(const phys_world *world, core_vec3 at, uint32_t layer);
 // The same for the body in `row`, timed now and then.
 core_vec3 phys_field_pull(const phys_world *world, core_vec3 at, uint32_t row);
+// Whether anything but gravity and what was applied for the step pulls at bodies; the whole of it.
+bool phys_pulled(const phys_world *world);
+core_vec3 phys_pull(const phys_world *world, core_vec3 at, core_vec3 velocity, float time,
+                    uint32_t row);
+// The integrator of a free body in this step; NULL: the solver's own.
+const phys_integrator *phys_integrator_of(const phys_world *world, uint32_t row);
 core_vec3 phys_field_wind(const phys_world *world, core_vec3 at, uint32_t layer); // m/s
 bool phys_geom_contains(const phys_geom *geom, core_vec3 point);
 phys_geom phys_geom_make(phys_shape_type type, core_vec3 position, core_quat rotation,

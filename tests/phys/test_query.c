@@ -206,6 +206,41 @@ static void test_integrators_are_chosen_by_name(void) {
     TEST_ASSERT_FALSE(phys_world_set(world, "integrator", "rk5"));
 }
 
+// A spring of 1 Hz to the origin that blows ever stronger: its own closed form.
+static core_vec3 spring(void *ctx, core_vec3 p, core_vec3 v, float t) {
+    (void)v;
+    const float *push = ctx;
+    return core_v3_add(core_v3_scale(p, -39.4784176f), core_v3(*push * t, 0, 0));
+}
+
+// auto: the exact term for a thrown ball, Runge-Kutta under a force of place and time; both at
+// once, and a ball at rest on the ground is left to the solver.
+static void test_auto_takes_what_the_body_needs(void) {
+    TEST_ASSERT_TRUE(phys_world_set(world, "integrator", "auto"));
+    phys_body thrown = add(PHYS_SPHERE, PHYS_DYNAMIC, core_v3(0, 0, 9), 0.1f, 0, 0);
+    phys_body_set_velocity(world, thrown, core_v3(3, 8, 0));
+    run(120);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 6.0f, at(thrown).x);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 16.0f - 0.5f * 9.81f * 4.0f, at(thrown).y);
+
+    tearDown();
+    setUp();
+    phys_world_set(world, "integrator", "auto");
+    phys_world_set_gravity(world, core_v3(0, 0, 0));
+    float push = 3.0f;
+    phys_world_set_force(world, spring, &push);
+    phys_body swung = add(PHYS_SPHERE, PHYS_DYNAMIC, core_v3(0, 1, 0), 0.1f, 0, 0);
+    run(90);
+    // x'' = -k x + 3 t from rest: x = 3/k (t - sin(w t) / w); y = cos(w t). w = 2 pi, t = 1.5.
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 3.0f / 39.4784176f * 1.5f, at(swung).x);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, -1.0f, at(swung).y);
+    phys_world_set_force(world, NULL, NULL);
+    core_vec3 before = at(swung), v;
+    phys_body_velocity(world, swung, &v);
+    run(60);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, before.x + v.x, at(swung).x); // set free
+}
+
 int main(void) {
     core_log_set_level(CORE_LOG_ERROR + 1);
     UNITY_BEGIN();
@@ -216,5 +251,6 @@ int main(void) {
     RUN_TEST(test_locks_hold_exactly);
     RUN_TEST(test_kinematic_carries_and_is_not_pushed);
     RUN_TEST(test_integrators_are_chosen_by_name);
+    RUN_TEST(test_auto_takes_what_the_body_needs);
     return UNITY_END();
 }
