@@ -280,11 +280,11 @@ function Joint:getForce() end
 ---@return number z
 function Joint:getTorque() end
 
----Angle in rad (revolute; ball: twist), way in m (prismatic) or length in m (distance).
+---Angle in rad (revolute; ball: twist; universal: of axisB about axis), way in m (prismatic) or length in m (distance; pulley: a's side).
 ---@return number value
 function Joint:getValue() end
 
----Drives distance, revolute and prismatic joints.
+---Drives all but fixed and ball joints; a pivot's turns b.
 ---@param speed number of b against a
 ---@param max number most it gives; 0 turns it off
 function Joint:setMotor(speed, max) end
@@ -1900,9 +1900,9 @@ function corsac.phys.overlapSphere(x, y, z, radius, options) end
 ---@field anchorB? number[] distance, pulley: on b, m
 ---@field axis? number[] direction in the world
 ---@field axisB? number[] universal (+x), pivot (axis): that of b
----@field lower? number ball (twist), distance, revolute, prismatic, m or rad
+---@field lower? number ball (twist), distance, revolute, prismatic, universal, pulley (a's side), m or rad
 ---@field upper? number with lower; alone for a rope, m or rad
----@field cone? number ball: largest lean of the axis; 0 for none, rad
+---@field cone? number ball: largest lean of the axis; universal: turn about axisB to either side; 0 for none, rad
 ---@field motorSpeed? number of b against a, m/s or rad/s
 ---@field motorMax? number most the motor gives, N or N m
 ---@field hertz? number spring; 0 for none, Hz

@@ -423,6 +423,56 @@ static void test_pivot_motor(void) {
     TEST_ASSERT_FALSE(phys_joint_alive(w, phys_joint_create(w, &d)));
 }
 
+// A weight on each kind of joint: what the joint says it bears is what statics say, it holds at a
+// tenth more than that and breaks at a tenth less.
+static const phys_joint_type bearing[] = {PHYS_JOINT_FIXED,     PHYS_JOINT_BALL,
+                                          PHYS_JOINT_DISTANCE,  PHYS_JOINT_REVOLUTE,
+                                          PHYS_JOINT_PRISMATIC, PHYS_JOINT_UNIVERSAL};
+static phys_joint hang(phys_joint_type type, float x, float break_force) {
+    phys_body b = box(core_v3(x, -1, 0), core_v3(0.1f, 0.5f, 0.1f), false); // 40 kg
+    phys_joint_desc d = desc(type, CORE_NULL_HANDLE, b, core_v3(x, -0.5f, 0));
+    d.anchor_a = core_v3(x, 0, 0);
+    d.anchor_b = core_v3(x, -0.5f, 0);
+    d.axis = core_v3(0, 0, 1); // prismatic: across the load
+    d.axis_b = core_v3(1, 0, 0);
+    d.break_force = break_force;
+    return make(&d);
+}
+static void test_reported_loads_and_breaking(void) {
+    const float weight = 40 * 9.81f;
+    for (size_t i = 0; i < CORE_COUNT_OF(bearing); i++) {
+        phys_joint free = hang(bearing[i], 0, 0);
+        phys_joint strong = hang(bearing[i], 1, 1.1f * weight);
+        phys_joint weak = hang(bearing[i], 2, 0.9f * weight);
+        run(3);
+        core_vec3 force, torque;
+        TEST_ASSERT_TRUE(phys_joint_force(w, free, &force, &torque));
+        TEST_ASSERT_FLOAT_WITHIN(0.01f * weight, weight, force.y);
+        TEST_ASSERT_FLOAT_WITHIN(0.01f * weight, 0, force.x);
+        TEST_ASSERT_TRUE(phys_joint_alive(w, strong));
+        TEST_ASSERT_FALSE(phys_joint_alive(w, weak));
+        tearDown();
+        setUp();
+    }
+}
+
+// A beam clamped at one end: m g l / 2 at the clamp.
+static void test_reported_torque(void) {
+    phys_body b = box(core_v3(1, 0, 0), core_v3(1, 0.05f, 0.1f), false); // 40 kg
+    phys_joint_desc d = desc(PHYS_JOINT_FIXED, CORE_NULL_HANDLE, b, core_v3(0, 0, 0));
+    phys_joint j = make(&d);
+    d.break_torque = 0.9f * 40 * 9.81f;
+    run(3);
+    core_vec3 force, torque;
+    phys_joint_force(w, j, &force, &torque);
+    TEST_ASSERT_FLOAT_WITHIN(4.0f, 40 * 9.81f, force.y);
+    TEST_ASSERT_FLOAT_WITHIN(4.0f, 40 * 9.81f, core_v3_length(torque));
+    phys_joint weak = make(&d); // shares the load at first, then bears what is left
+    phys_joint_destroy(w, j);
+    run(3);
+    TEST_ASSERT_FALSE(phys_joint_alive(w, weak));
+}
+
 // A shaft bent by beta: out / in = cos beta / (1 - sin^2 beta cos^2 angle) at least and most
 // cos beta and 1 / cos beta.
 static void test_cardan_ripple(void) {
@@ -482,6 +532,8 @@ int main(void) {
     RUN_TEST(test_universal_motor);
     RUN_TEST(test_pulley_limit_and_winch);
     RUN_TEST(test_pivot_motor);
+    RUN_TEST(test_reported_loads_and_breaking);
+    RUN_TEST(test_reported_torque);
     RUN_TEST(test_cardan_ripple);
     return UNITY_END();
 }

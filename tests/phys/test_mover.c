@@ -2,6 +2,7 @@
 // random walks that never get into a body.
 #include "core/hash.h"
 #include "core/log.h"
+#include "phys/mover_walks.h"
 #include "phys/phys.h"
 #include "unity.h"
 
@@ -313,84 +314,7 @@ static void test_slides_down_what_is_too_steep(void) {
     TEST_ASSERT_FLOAT_WITHIN(0.25f, 4.25f, way);
 }
 
-static uint64_t seed;
-static float random_in(float lo, float hi) {
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return lo + (hi - lo) * ((float)(seed >> 40) / 16777216.0f);
-}
-
-static void build_mess(void) {
-    add_floor();
-    for (int i = 0; i < 120; i++) {
-        core_quat q = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
-        core_vec3 at = core_v3(random_in(-9, 9), random_in(-0.3f, 1.5f), random_in(-9, 9));
-        phys_body_desc b = phys_body_desc_default();
-        b.type = PHYS_STATIC;
-        b.position = at;
-        b.rotation = q;
-        phys_shape_desc s = phys_shape_desc_default((phys_shape_type)(i % 5 == 2 ? 0 : i % 5));
-        s.radius = random_in(0.1f, 0.8f);
-        s.half_height = random_in(0.1f, 0.8f);
-        s.half = core_v3(random_in(0.05f, 1), random_in(0.05f, 1), random_in(0.05f, 1));
-        phys_body_create(w, &b, &s, 1);
-    }
-    for (int i = 0; i < 4; i++) {
-        float s = i % 2 ? 10.5f : -10.5f;
-        add_static(i < 2 ? core_v3(s, 2, 0) : core_v3(0, 2, s),
-                   i < 2 ? core_v3(0.5f, 3, 11) : core_v3(11, 3, 0.5f));
-    }
-}
-
-// Walks of 20 steps, each from where the last one ended, so that bad places are found and left.
-static void test_random_walks_never_get_into_a_body(void) {
-    seed = 11;
-    build_mess();
-    enum { WALKERS = 20, WALKS = 500, STEPS = 20 };
-    phys_mover walker[WALKERS];
-    for (int i = 0; i < WALKERS; i++) {
-        walker[i] = add_mover(core_v3(random_in(-9, 9), 3.0f, random_in(-9, 9)), 0, -1);
-    }
-    run(120);
-    phys_shape_desc capsule = phys_shape_desc_default(PHYS_CAPSULE);
-    capsule.radius = 0.3f;
-    capsule.half_height = 0.6f;
-    float deepest = 0;
-    core_vec3 from[WALKERS];
-    int idle[WALKERS] = {0}, longest = 0;
-    for (int k = 0; k < WALKS; k++) {
-        for (int i = 0; i < WALKERS; i++) {
-            hero = walker[i];
-            from[i] = state().position;
-            phys_mover_walk(w, hero, core_v3(random_in(-6, 6), 0, random_in(-6, 6)));
-            if (random_in(0, 1) < 0.2f && state().ground == PHYS_MOVER_GROUND) {
-                phys_mover_jump(w, hero, random_in(1, 5));
-            }
-        }
-        for (int s = 0; s < STEPS; s++) {
-            run(1);
-            for (int i = 0; i < WALKERS && s % 5 == 4; i++) {
-                hero = walker[i];
-                phys_touch t[8];
-                uint32_t n = phys_world_touch(w, &capsule, state().position, core_quat_identity(),
-                                              0.0f, NULL, t, 8);
-                for (uint32_t j = 0; j < n && j < 8; j++) {
-                    deepest = fmaxf(deepest, -t[j].gap);
-                }
-            }
-        }
-        for (int i = 0; i < WALKERS; i++) {
-            hero = walker[i];
-            core_vec3 p = state().position;
-            bool moved = core_v3_length(core_v3_sub(p, from[i])) > 1e-3f;
-            idle[i] = moved ? 0 : idle[i] + 1;
-            longest = idle[i] > longest ? idle[i] : longest;
-            TEST_ASSERT_TRUE(fabsf(p.x) < 9.8f && fabsf(p.z) < 9.8f && p.y > 0.85f && p.y < 8.0f);
-        }
-    }
-    printf("deepest %g m, walks in a row that went nowhere: %d\n", (double)deepest, longest);
-    less_than(1e-3f, deepest);
-    TEST_ASSERT_LESS_THAN_INT(8, longest);
-}
+static void test_random_walks_never_get_into_a_body(void) { random_walks(w, 100); }
 
 static uint64_t state_hash(void) {
     const core_columns *set[16];
@@ -406,8 +330,8 @@ static uint64_t state_hash(void) {
 }
 
 static void test_a_snapshot_goes_on_with_the_same_bits(void) {
-    seed = 3;
-    build_mess();
+    mess_seed = 3;
+    build_mess(w);
     add_box(core_v3(0, 4, 0), core_v3(0.4f, 0.4f, 0.4f), core_quat_identity(), PHYS_DYNAMIC, 50);
     add_mover(core_v3(1, 3, 1), 0, -1);
     run(60);
