@@ -501,8 +501,7 @@ gfx_device_use gfx_device_used(const gfx_device *device);
 typedef struct gfx_pass_use {
     const char *name;
     uint64_t runs;
-    double gpu_ms; // of the first `timed` runs together; no software renderer is timed
-    uint64_t timed;
+    double gpu_ms; // least of the runs; 0: not known, as with software renderers
 } gfx_pass_use;
 const gfx_pass_use *gfx_device_passes(const gfx_device *device, uint32_t *count);
 

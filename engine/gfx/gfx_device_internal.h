@@ -394,6 +394,7 @@ struct gfx_device {
     gfx_material_cache materials;
     GLsync fence[GFX_FRAMES];
     GLuint timer[GFX_FRAMES];
+    bool timing;    // a timer runs
     uint32_t frame; // turn of the streams
     gfx_quads quads;
     gfx_marks marks;

@@ -30,12 +30,14 @@ static void begin_timer(gfx_device *d) {
         core_stage_add_ns(d->metrics, CORE_STAGE_GFX_GPU, ns);
     }
     glBeginQuery(GL_TIME_ELAPSED, d->timer[d->frame]);
+    d->timing = true;
 }
 
 static void end_turn(gfx_device *d) {
     gfx_passes_end_turn(d);
-    if (d->timer[d->frame]) {
+    if (d->timing) {
         glEndQuery(GL_TIME_ELAPSED);
+        d->timing = false;
     }
     d->fence[d->frame] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 }
@@ -415,6 +417,7 @@ static bool draw_views(gfx_device *d, gfx_world *world) {
         }
     }
     begin_turn(d); // for what is drawn over all of them
+    begin_timer(d);
     upload_screen(d);
     ok = ok && draw_screen(d, world);
     end_turn(d);

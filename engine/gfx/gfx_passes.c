@@ -48,8 +48,8 @@ void gfx_passes_begin_turn(gfx_device *d) {
         glGetQueryObjectui64v(turn->query[i], GL_QUERY_RESULT, &to);
         if (i > 0) {
             gfx_pass_use *use = find(d, turn->name[i - 1]);
-            use->gpu_ms += (double)(to - from) * 1e-6;
-            use->timed++;
+            double ms = (double)(to - from) * 1e-6; // with what the processor kept the GPU waiting
+            use->gpu_ms = use->gpu_ms > 0.0 ? CORE_MIN(use->gpu_ms, ms) : ms;
         }
     }
     turn->count = 0;
