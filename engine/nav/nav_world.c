@@ -162,7 +162,8 @@ bool nav_world_set_obstacles(nav_world *w, const nav_obstacle *o, uint32_t count
                              (double)o[i].position.y, (double)o[i].position.z);
         }
     }
-    nav_buffer_fit(&w->obstacles, ((size_t)count + 1) * sizeof *o);
+    // Room for some from the start: a body that comes near later asks for no memory.
+    nav_buffer_fit(&w->obstacles, (size_t)CORE_MAX(count + 1, 64u) * sizeof *o);
     if (count) {
         memcpy(w->obstacles.data, o, count * sizeof *o);
     }

@@ -136,15 +136,23 @@ local function fall()
   insist(y > 0.9 and z > 2, "the fox does not come to the near bank")
 end
 
+-- Asks for the garden once more, and in the second one leaves from its title.
+local function again()
+  corsac.wait(2.5)
+  tap("enter")
+  insist(false, "Enter does not begin anew")
+end
+
 local plans = {
   play = { begin, court, veil, bridge, escape, key, door },
   caught = { begin, court, veil, bridge, caught },
   fall = { begin, court, veil, fall },
+  again = corsac.getRunData() and {} or { begin, court, veil, bridge, escape, key, door, again },
 }
 
 function bot.start(plan, ...)
   game, fox, guard, glow, toys = ...
-  local parts = plans[plan] or error("bot: the plans are play, caught and fall, not " .. plan, 0)
+  local parts = plans[plan] or error("bot: the plans are play, caught, fall and again, not " .. plan, 0)
   corsac.spawn(function()
     for _, part in ipairs(parts) do part() end
     corsac.wait(4)

@@ -1,7 +1,7 @@
 -- Foxlight: a fox wakes the lanterns of a walled garden. Two minutes, from title to end.
 --
 --   corsac run scripts/game                              play
---   corsac run scripts/game --headless --set bot=play    a bot plays it (caught, fall: its mishaps)
+--   corsac run scripts/game --headless --set bot=play    a bot plays it (caught, fall, again: other ends)
 --   corsac run scripts/game --mod scripts/mods/midsummer
 local layout, garden, glow, toys = require("layout"), require("garden"), require("glow"), require("toys")
 local fox, guard, camera, hud = require("fox"), require("guard"), require("camera"), require("hud")
@@ -18,11 +18,11 @@ local function enter(state)
   input.setCursor(state == "play" and "locked" or "normal")
 end
 
--- Actions that began in this step.
+-- Actions that began in this step; one that is held when the scene begins must be let go first.
 local function sample()
   for _, name in ipairs{ "start", "pause", "spirit", "quit" } do
     local down = input.isDown(name)
-    pressed[name] = down and not held[name]
+    pressed[name] = down and held[name] == false
     held[name] = down
   end
 end
@@ -141,7 +141,7 @@ states["end"] = function(dt)
   fox.step(dt, 0, 0, false)
   glow.step(x, y, z, true)
   if pressed.quit then corsac.exit(0) end
-  if pressed.start and game.since > 2 then corsac.run(".") end
+  if pressed.start and game.since > 2 then corsac.run("main.lua", { again = true }) end
 end
 
 local function openDoor(body)
@@ -178,6 +178,7 @@ local function report()
   set("x", x)
   set("y", y)
   set("z", z)
+  set("again", corsac.getRunData() and 1 or 0)
   set("playing", game.state == "play" and 1 or 0)
   set("finished", game.state == "end" and 1 or 0)
   for _, name in ipairs{ "key", "door", "passed", "crossed" } do set(name, game[name] and 1 or 0) end

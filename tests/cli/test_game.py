@@ -103,10 +103,13 @@ class Mishaps(unittest.TestCase):
     def test_a_fall_into_the_water_leads_back_to_the_bank(self):
         self.expect("fall", caught=0, fallen=1, finished=0)
 
+    def test_enter_at_the_end_begins_anew(self):
+        self.expect("again", again=1, finished=0, playing=0, lanterns=0)
+
     def test_an_unknown_plan_names_those_there_are(self):
         done = play("chase")
         self.assertEqual(done.code, 1)
-        self.assertIn("the plans are play, caught and fall, not chase", done.err)
+        self.assertIn("the plans are play, caught, fall and again, not chase", done.err)
 
 
 class Modded(unittest.TestCase):
