@@ -40,6 +40,7 @@ scene *scene_create(const scene_desc *desc) {
         return NULL;
     }
     scene *s = core_alloc(sizeof *s);
+    s->moves = 1;
     uint32_t most = desc->max_entities ? desc->max_entities : 1u << 20;
     s->jobs = desc->jobs;
     s->metrics = desc->metrics;

@@ -194,6 +194,9 @@ bool scene_set_scale(scene *s, scene_entity e, core_vec3 v);
 // The emitter follows the entity from now on, and gives no more particles once the entity is gone.
 bool scene_set_emitter(scene *s, scene_entity e, gfx_emitter emitter);
 
+// How many children without bodies the last step placed anew: those below something that moved.
+uint32_t scene_moved(const scene *s);
+
 // ---- tags and queries ----
 #define SCENE_MAX_TAGS 64
 // Number of a tag by name, 0..63; a new name takes the next. -1 + core_fail when all are taken or

@@ -74,6 +74,7 @@ void scene_world_of(scene *s, uint32_t row) {
         q = core_quat_normalize(core_quat_mul(aq, q));
         v = (core_vec3){v.x * av.x, v.y * av.y, v.z * av.z};
     }
+    e->changed[row] = s->moves;
     e->wpx[row] = p.x;
     e->wpy[row] = p.y;
     e->wpz[row] = p.z;
@@ -130,13 +131,25 @@ void scene_world_of_children(scene *s) {
     if (s->order_stale) {
         rebuild_order(s);
     }
+    scene_entities *e = &s->entity;
+    s->moved_count = 0;
     for (uint32_t i = 0; i < s->order_count; i++) {
         uint32_t row = s->order[i];
-        if (core_handle_is_null(s->entity.body[row])) {
+        if (!core_handle_is_null(e->body[row])) {
+            continue;
+        }
+        uint32_t above = core_columns_row(&e->set, e->parent[row]);
+        bool moved =
+            e->changed[row] == s->moves || (above != CORE_NO_ROW && e->changed[above] == s->moves);
+        if (moved) {
             scene_world_of(s, row);
+            s->moved_count++;
         }
     }
+    s->moves++;
 }
+
+uint32_t scene_moved(const scene *s) { return s->moved_count; }
 
 void scene_interpolation_reset(scene *s, uint32_t row) {
     scene_entities *e = &s->entity;
@@ -152,6 +165,7 @@ void scene_interpolation_reset(scene *s, uint32_t row) {
 void scene_subtree_moved(scene *s, scene_entity root) {
     scene_entities *e = &s->entity;
     scene_interpolation_reset(s, core_columns_row(&e->set, root));
+    e->changed[core_columns_row(&e->set, root)] = s->moves;
     for (scene_entity at = walk_next(e, root, root); !core_handle_is_null(at);
          at = walk_next(e, root, at)) {
         uint32_t row = core_columns_row(&e->set, at);
@@ -223,6 +237,7 @@ bool scene_set_parent(scene *s, scene_entity child, scene_entity parent) {
     scene_unlink(s, row);
     scene_link(s, row, parent);
     scene_local_from_world(s, row);
+    e->changed[row] = s->moves;
     for (scene_entity at = walk_next(e, child, child); !core_handle_is_null(at);
          at = walk_next(e, child, at)) {
         uint32_t below = core_columns_row(&e->set, at);

@@ -48,6 +48,7 @@
     X(float, oqy, 0)                                                                               \
     X(float, oqz, 0)                                                                               \
     X(float, oqw, 0)                                                                               \
+    X(uint64_t, changed, 0) /* `moves` when its place or parent last changed */                    \
     X(scene_drawn, drawn, 0)                                                                       \
     X(core_handle, instance, 0)                                                                    \
     X(float, dx, 0)                                                                                \
@@ -107,6 +108,8 @@ typedef struct scene_models scene_models;
 typedef struct scene_sounds scene_sounds;
 
 struct scene {
+    uint64_t moves;       // raised by every step, once children have followed
+    uint32_t moved_count; // of children in the last step
     core_jobs *jobs;
     core_metrics *metrics;
     core_vfs *vfs;

@@ -149,6 +149,7 @@ static void lead(scene *s, uint32_t row, nav_agent agent) {
     e->wpx[row] = p.x, e->wpy[row] = p.y + e->agent_offset[row], e->wpz[row] = p.z;
     e->wqx[row] = turn.x, e->wqy[row] = turn.y, e->wqz[row] = turn.z, e->wqw[row] = turn.w;
     scene_local_from_world(s, row);
+    e->changed[row] = s->moves;
 }
 
 // ---- bodies in the way ----

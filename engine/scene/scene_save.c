@@ -92,6 +92,7 @@ static void refresh(scene *s) {
     s->order_stale = true;
     s->sounding = false;
     for (uint32_t row = 0; row < count; row++) {
+        e->changed[row] = s->moves;
         if (core_handle_is_null(e->parent[row])) {
             scene_world_of(s, row);
         }

@@ -26,6 +26,7 @@ static void body_gone(scene *s, uint32_t row) {
     scene_entities *e = &s->entity;
     e->body[row] = CORE_NULL_HANDLE;
     scene_local_from_world(s, row);
+    e->changed[row] = s->moves;
 }
 
 void scene_pull_bodies(scene *s) {
@@ -44,6 +45,14 @@ void scene_pull_bodies(scene *s) {
             body_gone(s, row);
             continue;
         }
+        const float now[7] = {pose.px[b], pose.py[b], pose.pz[b], pose.qx[b],
+                              pose.qy[b], pose.qz[b], pose.qw[b]};
+        const float was[7] = {e->wpx[row], e->wpy[row], e->wpz[row], e->wqx[row],
+                              e->wqy[row], e->wqz[row], e->wqw[row]};
+        if (memcmp(now, was, sizeof now) == 0) {
+            continue; // at rest, and so are its children
+        }
+        e->changed[row] = s->moves;
         e->wpx[row] = pose.px[b];
         e->wpy[row] = pose.py[b];
         e->wpz[row] = pose.pz[b];

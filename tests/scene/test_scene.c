@@ -168,6 +168,38 @@ static void a_chain_of_ten_thousand_does_not_recurse(void) {
     TEST_ASSERT_FALSE(scene_alive(s, last));
 }
 
+// A thousand children of things at rest, ten below a ball that falls: ten are placed a step.
+static void only_what_moved_moves_its_children(void) {
+    scene_entity still = spawn_at(1, 0, 0, CORE_NULL_HANDLE), ball = spawn_ball(9, "ball");
+    scene_entity child[1000], below[10];
+    for (int i = 0; i < 1000; i++) {
+        child[i] = spawn_at(0, 1, 0, i % 100 ? child[i - 1] : still);
+    }
+    for (int i = 0; i < 10; i++) {
+        below[i] = spawn_at(0, 0.1f, 0, i ? below[i - 1] : ball);
+    }
+    scene_step(s);
+    scene_step(s);
+    TEST_ASSERT_EQUAL_UINT32(10, scene_moved(s));
+    core_vec3 top, p;
+    TEST_ASSERT_TRUE(scene_position(s, ball, &top) && scene_position(s, below[9], &p));
+    TEST_ASSERT_FLOAT_WITHIN(1e-4f, 1.0f, p.y - top.y); // the ball does not turn
+    TEST_ASSERT_TRUE(top.y < 9.0f);
+    scene_set_position(s, still, core_v3(5, 0, 0));
+    assert_at(child[999], 5, 100, 0);
+    scene_step(s);
+    TEST_ASSERT_EQUAL_UINT32(1010, scene_moved(s));
+    TEST_ASSERT_TRUE(scene_set_parent(s, child[100], ball));
+    scene_step(s);
+    TEST_ASSERT_EQUAL_UINT32(110, scene_moved(s));
+    // Stopped in the air, it rests.
+    phys_world_set_gravity(scene_phys(s), core_v3(0, 0, 0));
+    phys_body_set_velocity(scene_phys(s), scene_entity_body(s, ball), core_v3(0, 0, 0));
+    scene_step(s);
+    scene_step(s);
+    TEST_ASSERT_EQUAL_UINT32(0, scene_moved(s));
+}
+
 static void despawn_takes_the_subtree_and_nothing_else(void) {
     scene_entity root = spawn_at(0, 0, 0, CORE_NULL_HANDLE), kept = spawn_at(1, 0, 0, root);
     scene_entity gone = spawn_at(2, 0, 0, root), below[20];
@@ -329,6 +361,7 @@ int main(void) {
     RUN_TEST(children_follow_turn_and_scale);
     RUN_TEST(a_new_parent_keeps_the_world_pose);
     RUN_TEST(a_chain_of_ten_thousand_does_not_recurse);
+    RUN_TEST(only_what_moved_moves_its_children);
     RUN_TEST(despawn_takes_the_subtree_and_nothing_else);
     RUN_TEST(bodies_lead_their_entities);
     RUN_TEST(names);
