@@ -5,11 +5,13 @@
 // or slides never has its core in anything, and slow bodies are not looked at.
 #include "phys/mesh_internal.h"
 
-#define CORE_PART 0.5f  // of the thinnest half width is taken off
-#define HULL_PART 0.6f  // a hull's core is the hull at this scale about its middle
-#define MIDDLE    1e-3f // m
-#define CLEAR     2e-3f // m: cores nearer than this at the start go no nearer
-#define SLOW_TURN 0.01f // rad, half of the angle
+#define CORE_PART 0.5f    // of the thinnest half width is taken off
+#define HULL_PART 0.6f    // a hull's core is the hull at this scale about its middle
+#define MIDDLE    1e-3f   // m
+#define CLEAR     1.2e-3f // m: cores nearer than this at the start go no nearer
+#define DEEP      4e-3f   // m
+#define SLOW_TURN 0.001f  // rad, half of the angle
+#define SLOW_WAY  5e-4f   // m
 #define ROUNDS    4
 
 typedef struct guard {
@@ -40,6 +42,11 @@ static core_vec3 turn_of(const guard *g, uint32_t row) {
                      : core_v3_scale(v, 2.0f * core_atan2f(s, sign * d.w) / s);
 }
 
+// Half, but for what is so thin that a sweep, which ends 1 mm short, could not tell.
+static float depth_of_core(float half) {
+    return CORE_MAX(CORE_PART * half, CORE_MIN(DEEP, 0.99f * half));
+}
+
 static float thinnest(const phys_shapes *s, uint32_t i) {
     core_vec3 h = s->half[i];
     float flat = CORE_MIN(h.x, CORE_MIN(h.y, h.z));
@@ -54,23 +61,23 @@ static float thinnest(const phys_shapes *s, uint32_t i) {
     }
 }
 
-// Beyond what speculative contacts see for sure. Cheap: asked of every body.
+// Farther than its core is deep. Cheap: asked of every body.
 static bool went_far(const guard *g, uint32_t row) {
     const phys_world *w = g->world;
     core_quat p = g->before[row], q = phys_body_quat(&w->bodies, row);
     core_vec3 way = way_of(g, row);
     float dot = p.x * q.x + p.y * q.y + p.z * q.z + p.w * q.w;
     float way2 = core_v3_dot(way, way), sine2 = CORE_MAX(1.0f - dot * dot, 0.0f);
-    if (way2 < PHYS_MARGIN * PHYS_MARGIN && sine2 < SLOW_TURN * SLOW_TURN) {
+    if (way2 < SLOW_WAY * SLOW_WAY && sine2 < SLOW_TURN * SLOW_TURN) {
         return false;
     }
     float far = core_sqrtf(way2), turn = CORE_PI_F * core_sqrtf(sine2); // at least the angle
     for (uint32_t slot = w->bodies.shape[row]; slot != 0;) {
         uint32_t i = phys_slot_row(&w->shapes.set, slot);
-        float thin = CORE_PART * thinnest(&w->shapes, i);
+        float thin = depth_of_core(thinnest(&w->shapes, i));
         float arm = w->shapes.type[i] == PHYS_SPHERE ? core_v3_length(w->shapes.position[i])
                                                      : phys_shape_extent(&w->shapes, i);
-        if (far + turn * arm > CORE_MAX(thin, PHYS_MARGIN)) {
+        if (far + turn * arm > thin) {
             return true;
         }
         slot = w->shapes.next[i];
@@ -114,11 +121,11 @@ static void shrink(const guard *g, phys_geom *geom, phys_geom_hull *room) {
     float thin;
     switch (geom->type) {
     case PHYS_BOX:
-        thin = CORE_PART * CORE_MIN(geom->half.x, CORE_MIN(geom->half.y, geom->half.z));
+        thin = depth_of_core(CORE_MIN(geom->half.x, CORE_MIN(geom->half.y, geom->half.z)));
         geom->half = core_v3_sub(geom->half, core_v3(thin, thin, thin));
         break;
     case PHYS_CYLINDER:
-        thin = CORE_PART * CORE_MIN(geom->radius, geom->half_height);
+        thin = depth_of_core(CORE_MIN(geom->radius, geom->half_height));
         geom->radius -= thin;
         geom->half_height -= thin;
         break;
@@ -135,7 +142,7 @@ static void shrink(const guard *g, phys_geom *geom, phys_geom_hull *room) {
         break;
     }
     default:
-        geom->radius *= CORE_PART;
+        geom->radius -= depth_of_core(geom->radius);
     }
 }
 

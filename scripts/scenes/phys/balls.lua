@@ -3,7 +3,7 @@ local scene, gfx = corsac.scene, corsac.gfx
 local n = corsac.param("n", 500)
 
 function corsac.conf(t)
-  t.steps = 600
+  t.steps = 900
 end
 
 function corsac.load()
