@@ -14,6 +14,7 @@ CORE_COLUMNS_DEFINE(scene_entities, SCENE_ENTITY_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_names, SCENE_NAME_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_clock, SCENE_CLOCK_COLUMNS)
 CORE_COLUMNS_DEFINE(scene_feet, SCENE_FEET_COLUMNS)
+CORE_COLUMNS_DEFINE(scene_ragdolls, SCENE_RAGDOLL_COLUMNS)
 
 static const char *const rooms[] = {"scene", "script", "phys", "gfx", "anim", "nav", "audio"};
 
@@ -73,6 +74,7 @@ void scene_destroy(scene *s) {
         gfx_world_destroy(s->gfx);
     }
     core_columns_release(&s->feet.set);
+    core_columns_release(&s->ragdoll.set);
     core_columns_release(&s->entity.set);
     core_columns_release(&s->name.set);
     core_columns_release(&s->clock.set);
@@ -193,6 +195,7 @@ bool scene_step(scene *s) {
         s->hooks.events(s->hooks.ctx);
         core_stage_end(s->metrics, CORE_STAGE_SCRIPT);
     }
+    scene_ragdoll_step(s);
     scene_feet_step(s);
     scene_anim_pose(s);
     scene_audio_step(s);
@@ -217,6 +220,12 @@ int scene_state(const scene *s, const core_columns **out, int capacity) {
     if (s->stands) {
         if (out && count < capacity) {
             out[count] = &s->feet.set;
+        }
+        count++;
+    }
+    if (s->falls) {
+        if (out && count < capacity) {
+            out[count] = &s->ragdoll.set;
         }
         count++;
     }

@@ -92,6 +92,23 @@ typedef struct scene_feet_desc {
 // NULL: the animation has its feet to itself again.
 bool scene_set_feet(scene *s, scene_entity e, const scene_feet_desc *desc);
 
+// ---- ragdolls ----
+// Hands an animated entity to physics: in the step that follows, each bone that is long enough
+// becomes a body with the place and speed that the animation gave it. While it falls the bodies
+// give the pose and the entity follows them. A body of the entity's own should be in a layer that
+// does not meet theirs.
+typedef struct scene_ragdoll_desc {
+    float mass;     // kg in all, default 70
+    float least;    // m: shorter bones move with the one above, default 0.02
+    uint32_t layer; // of the bodies
+} scene_ragdoll_desc;
+bool scene_ragdoll_start(scene *s, scene_entity e, const scene_ragdoll_desc *desc);
+// Ends it: the bodies go, and the pose that it fell into turns into the animation's over `length`
+// s.
+bool scene_ragdoll_stop(scene *s, scene_entity e, float length);
+// Its bodies, parents first; returns how many there are: none before its first step.
+uint32_t scene_ragdoll_bodies(const scene *s, scene_entity e, phys_body *out, uint32_t capacity);
+
 // ---- models ----
 // Any other model file (.glb, .fbx, ...) is first converted into the user's cache by
 // libcorsac-convert.so, where that is installed.

@@ -91,6 +91,30 @@ typedef struct scene_feet_now {
     X(scene_feet_now, now, CORE_COLUMN_STATE)
 CORE_COLUMNS_DECLARE(scene_feet, SCENE_FEET_COLUMNS)
 
+// Skeletons that physics moves: one row an entity (scene_ragdoll.c).
+#define SCENE_RAGDOLL_BONES 48
+typedef struct scene_ragdoll_how {
+    float mass, least;
+    uint32_t layer;
+} scene_ragdoll_how;
+typedef struct scene_ragdoll_parts {
+    uint32_t count, bone[SCENE_RAGDOLL_BONES]; // ascending
+    phys_body body[SCENE_RAGDOLL_BONES];
+} scene_ragdoll_parts;
+typedef struct scene_ragdoll_was { // bones a step before the bodies
+    core_vec3 position[SCENE_RAGDOLL_BONES];
+    core_quat rotation[SCENE_RAGDOLL_BONES];
+} scene_ragdoll_was;
+#define SCENE_RAGDOLL_COLUMNS(X)                                                                   \
+    X(scene_entity, entity, CORE_COLUMN_STATE)                                                     \
+    X(uint32_t, phase, CORE_COLUMN_STATE)                                                          \
+    X(float, weight, CORE_COLUMN_STATE)                                                            \
+    X(float, length, CORE_COLUMN_STATE)                                                            \
+    X(scene_ragdoll_how, how, CORE_COLUMN_STATE)                                                   \
+    X(scene_ragdoll_parts, parts, CORE_COLUMN_STATE)                                               \
+    X(scene_ragdoll_was, was, CORE_COLUMN_STATE)
+CORE_COLUMNS_DECLARE(scene_ragdolls, SCENE_RAGDOLL_COLUMNS)
+
 typedef struct scene_kept_setting { // given before its room was made
     char room[16], name[48], value[64];
 } scene_kept_setting;
@@ -121,6 +145,8 @@ struct scene {
     scene_clock clock;
     scene_feet feet;
     bool stands; // some entity has, or had, feet
+    scene_ragdolls ragdoll;
+    bool falls; // some entity is, or was, a ragdoll
     core_rng view_rng;
     phys_world *phys;
     gfx_world *gfx;
@@ -187,6 +213,9 @@ void scene_audio_destroy(scene *s);
 // scene_feet.c
 void scene_feet_step(scene *s); // between physics and poses
 bool scene_feet_stream(scene *s, core_stream *stream);
+// scene_ragdoll.c
+void scene_ragdoll_step(scene *s); // between physics and poses
+bool scene_ragdoll_stream(scene *s, core_stream *stream);
 // scene_model.c
 void scene_models_destroy(scene *s);
 typedef struct scene_model_view {

@@ -172,6 +172,7 @@ static bool stream_all(scene *s, core_stream *stream, char **script) {
            core_stream_columns(stream, &s->clock.set) &&
            core_stream_columns(stream, &s->entity.set) &&
            core_stream_columns(stream, &s->name.set) && scene_feet_stream(s, stream) &&
+           scene_ragdoll_stream(s, stream) &&
            stream_names(stream, "layers", s->layer[0], SCENE_LAYER_NAME, &s->layer_count, 32) &&
            stream_names(stream, "tags", s->tag[0], SCENE_TAG_NAME, &s->tag_count, SCENE_MAX_TAGS) &&
            stream_rooms(s, stream) && stream_view(s, stream) && stream_script(stream, script) &&

@@ -132,6 +132,42 @@ static int set_feet(script *s, lua_State *L, void *args) {
     return done(L, scene_set_feet(s->scene, entity, d.count ? &d : NULL));
 }
 
+typedef struct ragdoll_options {
+    float mass, least;
+    const char *layer;
+} ragdoll_options;
+typedef struct ragdoll_args {
+    core_handle self;
+    ragdoll_options options;
+} ragdoll_args;
+static int start_ragdoll(script *s, lua_State *L, void *args) {
+    const ragdoll_args *a = args;
+    const ragdoll_options *o = &a->options;
+    scene_ragdoll_desc d = {.mass = o->mass, .least = o->least};
+    d.layer = o->layer ? bind_layer(s, L, o->layer) : 0;
+    return done(L, scene_ragdoll_start(s->scene, scene_entity_of_anim(s->scene, a->self), &d));
+}
+typedef struct stop_args {
+    core_handle self;
+    float length;
+} stop_args;
+static int stop_ragdoll(script *s, lua_State *L, void *args) {
+    const stop_args *a = args;
+    return done(L,
+                scene_ragdoll_stop(s->scene, scene_entity_of_anim(s->scene, a->self), a->length));
+}
+static int get_ragdoll(script *s, lua_State *L, void *args) {
+    phys_body body[64];
+    scene_entity e = scene_entity_of_anim(s->scene, *(core_handle *)args);
+    uint32_t count = scene_ragdoll_bodies(s->scene, e, body, CORE_COUNT_OF(body));
+    lua_createtable(L, (int)count, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        bind_push(s, L, &bind_body_type, body[i]);
+        lua_rawseti(L, -2, (int)i + 1);
+    }
+    return 1;
+}
+
 typedef struct weight_args {
     core_handle self;
     int64_t layer;
@@ -321,6 +357,15 @@ static const bind_arg goal_fields[] = {
      "reach: the tip stays turned as it was", .optional = true},
     {0}};
 
+static const bind_arg ragdoll_fields[] = {
+    {"mass", BIND_FLOAT, BIND_AT(ragdoll_options, mass), "in all, shared by volume", "kg",
+     BIND_POSITIVE, .optional = true, .def = 70},
+    {"least", BIND_FLOAT, BIND_AT(ragdoll_options, least), "shorter bones move with the one above",
+     "m", BIND_POSITIVE, .optional = true, .def = 0.02},
+    {"layer", BIND_STRING, BIND_AT(ragdoll_options, layer), "of the bodies", .optional = true,
+     .def_text = "default"},
+    {0}};
+
 static const bind_arg feet_fields[] = {
     {"bones", BIND_TABLE, BIND_AT(feet_options, bones),
      "names of up to four ends of limbs; none: the animation has its feet to itself again"},
@@ -347,6 +392,20 @@ const bind_fn bind_animator_methods[] = {
      BIND_ARGS(
          {"options", BIND_OPTIONS, BIND_AT(feet_args, options), "the feet", .fields = feet_fields}),
      NULL, sizeof(feet_args), BIND_SIM, .mod = true, .cost = 100, .run = set_feet},
+    {"startRagdoll",
+     "Hands its entity to physics: from the next step on each long bone is a body, with the place "
+     "and speed "
+     "that the animation gave it, and bodies give the pose.",
+     BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(ragdoll_args, options), "", .optional = true,
+                .def_text = "{}", .fields = ragdoll_fields}),
+     NULL, sizeof(ragdoll_args), BIND_SIM, .mod = true, .cost = 10000, .run = start_ragdoll},
+    {"stopRagdoll", "Ends it: the bodies go, and the pose it fell into turns into the animation's.",
+     BIND_ARGS({"length", BIND_FLOAT, BIND_AT(stop_args, length), "how long it takes", "s",
+                BIND_NOT_NEGATIVE, .optional = true, .def = 0.4}),
+     NULL, sizeof(stop_args), BIND_SIM, .mod = true, .cost = 500, .run = stop_ragdoll},
+    {"getRagdoll", "Its bodies while it is one, parents first.", NULL,
+     BIND_RETURNS({"bodies", "corsac.Body[]", NULL}), SELF, BIND_RUNNING, .mod = true, .cost = 50,
+     .run = get_ragdoll},
     {"setLayer", "Plays a clip or machine over the base, on all or some bones.",
      BIND_ARGS({"options", BIND_OPTIONS, BIND_AT(layer_args, options), "the layer",
                 .fields = layer_fields}),

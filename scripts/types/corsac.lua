@@ -665,6 +665,23 @@ function Animator:setGoal(options) end
 ---@param options Animator.setFeet.options the feet
 function Animator:setFeet(options) end
 
+---@class Animator.startRagdoll.options
+---@field mass? number in all, shared by volume, kg
+---@field least? number shorter bones move with the one above, m
+---@field layer? string of the bodies
+
+---Hands its entity to physics: from the next step on each long bone is a body, with the place and speed that the animation gave it, and bodies give the pose.
+---@param options? Animator.startRagdoll.options
+function Animator:startRagdoll(options) end
+
+---Ends it: the bodies go, and the pose it fell into turns into the animation's.
+---@param length? number how long it takes
+function Animator:stopRagdoll(length) end
+
+---Its bodies while it is one, parents first.
+---@return corsac.Body[] bodies
+function Animator:getRagdoll() end
+
 ---@class Animator.setLayer.options
 ---@field layer? integer 1 is the lowest above the base
 ---@field machine? corsac.Machine

@@ -61,9 +61,9 @@ class SceneSave(SceneCase):
             self.assertAlmostEqual(went_on["user"]["time"], later["user"]["time"], delta=1e-9)
             (self.dir / "player/slot.csave").unlink(missing_ok=True)
 
-    def test_feet_stand_where_they_stood(self):
+    def test_feet_and_ragdolls_are_where_they_were(self):
         text = """
-            local at, from = corsac.param("at", -1), corsac.param("from", -1)
+            local at, from, falls = corsac.param("at", -1), corsac.param("from", -1), corsac.param("falls", false)
             function corsac.load()
               for i = 0, 5 do
                 corsac.phys.newBody{ type = "static", shape = "box", size = { 2, 1, 0.2 },
@@ -73,14 +73,17 @@ class SceneSave(SceneCase):
               fox = corsac.scene.spawn{ model = model, clip = model:getClip("walk") }
             end
             function corsac.fixed()
-              local step = corsac.getStep()
-              if step == 10 then
-                fox:getAnimator():setFeet{ bones = { "hind_paw_l", "front_paw_r" }, root = "hips" }
+              local step, animator = corsac.getStep(), fox:getAnimator()
+              if step == 10 and falls then
+                animator:startRagdoll{ mass = 8 }
+              elseif step == 10 then
+                animator:setFeet{ bones = { "hind_paw_l", "front_paw_r" }, root = "hips" }
               end
-              if step == at then corsac.scene.save("feet") end
+              if step == 45 and falls then animator:stopRagdoll(0.2) end
+              if step == at then corsac.scene.save("fox") end
               if step == from then
                 from = -1
-                corsac.scene.load("feet")
+                corsac.scene.load("fox")
               end
             end"""
 
@@ -88,10 +91,13 @@ class SceneSave(SceneCase):
             done = self.run_scene(text, "--steps", steps, "--hash", "--quiet", *args, env=self.env)
             self.assert_exit(done, 0)
             return done.out
-        for at in (30, 5):  # before and after the feet were set
-            saved, later = go(at + 1, "--set", f"at={at}"), go(60)
-            self.assertEqual(go(20, "--set", "from=19"), saved)
-            self.assertEqual(go(20 + 59 - at, "--set", "from=19"), later)
+        for falls in ("false", "true"):
+            for at in (5, 10, 30, 50):  # before, in the step, after; getting up
+                with self.subTest(falls=falls, at=at):
+                    what = ("--set", f"falls={falls}")
+                    saved, later = go(at + 1, "--set", f"at={at}", *what), go(60, *what)
+                    self.assertEqual(go(20, "--set", "from=19", *what), saved)
+                    self.assertEqual(go(20 + 59 - at, "--set", "from=19", *what), later)
 
     def test_the_picture_is_that_of_the_save(self):
         shots = [self.dir / "saved.png", self.dir / "loaded.png"]
