@@ -25,7 +25,9 @@ float horizon(vec3 p, vec3 v, vec3 normal, vec2 along, float low, float shift) {
     for (float i = 0.0; i < steps; i += 1.0) {
         float s = (i + shift) / steps;
         vec2 offset = along * (s * s); // near occluders count most
-        ivec2 at = ivec2(gl_FragCoord.xy + sign(offset) * max(abs(offset), normalize(abs(along))));
+        // A pixel away at least: the difference of a point from itself need not be zero.
+        offset = sign(offset) * max(abs(offset), normalize(abs(along)));
+        ivec2 at = ivec2(floor(gl_FragCoord.xy + offset));
         if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(u_view.viewport.xy)))) {
             continue;
         }

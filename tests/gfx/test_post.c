@@ -57,10 +57,7 @@ static void test_a_plane_does_not_occlude_itself(void) {
         gfx_world_set_camera(f.world, &c);
         float *ao = render_pass("ao");
         for (size_t p = 0; p < WIDTH * HEIGHT; ++p) {
-            if (ao[4 * p] < least) {
-                least = ao[4 * p];
-                printf("view %zu, pixel %zu, %zu: %.4f\n", i, p % WIDTH, p / WIDTH, (double)least);
-            }
+            least = fminf(least, ao[4 * p]);
         }
         core_free(ao);
     }
