@@ -103,6 +103,7 @@ CORE_COLUMNS_DECLARE(gfx_effects, GFX_EFFECT_COLUMNS)
 CORE_COLUMNS_DECLARE(gfx_viewports, GFX_VIEWPORT_COLUMNS)
 
 #define GFX_BUILTIN_MESHES 5
+extern const char *const gfx_builtin_names[GFX_BUILTIN_MESHES];
 
 typedef enum gfx_command_type { GFX_CMD_RECT, GFX_CMD_TEXT, GFX_CMD_IMAGE } gfx_command_type;
 typedef struct gfx_command { // one 2D call; text lies in the world's frame text

@@ -467,9 +467,11 @@ static gfx_mesh make_level(gfx_world *world, int which, int level, gfx_mesh coar
     return mesh;
 }
 
+const char *const gfx_builtin_names[GFX_BUILTIN_MESHES] = {"box", "sphere", "capsule", "cylinder",
+                                                           "plane"};
+
 gfx_mesh gfx_mesh_builtin(gfx_world *world, const char *name) {
-    static const char *const names[GFX_BUILTIN_MESHES] = {"box", "sphere", "capsule", "cylinder",
-                                                          "plane"};
+    const char *const *names = gfx_builtin_names;
     int which = gfx_find_name(name, names, GFX_BUILTIN_MESHES);
     if (which < 0) {
         gfx_fail_name("mesh", name, names, GFX_BUILTIN_MESHES);

@@ -1,10 +1,11 @@
 """corsac.scene.save and load: a whole scene, in both forms, from Lua; recorded; damaged."""
 
 import json
+import shutil
 import unittest
 
 import png
-from support import SceneCase, corsac
+from support import ROOT, SceneCase, corsac
 
 SCENE = """
 local at, from = corsac.param("at", -1), corsac.param("from", -1)
@@ -149,6 +150,24 @@ class SceneSave(SceneCase):
         (self.dir / "player/slot.csave").unlink()
         again = self.run_scene(SCENE, "--replay", file, "--hash", "--quiet", env=self.env)
         self.assertEqual((again.code, again.out), (0, was.out), str(again))
+
+    def test_the_whole_game_in_a_new_process_and_in_one_that_went_on(self):
+        game = self.dir / "game"
+        shutil.copytree(ROOT / "scripts/game", game)
+        with open(game / "main.lua", "a", encoding="utf-8") as file:
+            file.write("""
+                local at, from, fixed = corsac.param("at", -1), corsac.param("from", -1), corsac.fixed
+                function corsac.fixed(dt)
+                  fixed(dt)
+                  if corsac.getStep() == at then corsac.scene.save("slot") end
+                  if corsac.getStep() == from then corsac.scene.load("slot") end
+                end""")
+        hashes = []
+        for steps, setting in ((400, "at=399"), (30, "from=29"), (500, "from=499")):
+            done = corsac("run", game, "--headless", "--steps", steps, "--set", setting, "--hash", "--quiet", env=self.env)
+            self.assert_exit(done, 0)
+            hashes.append(done.out.strip())
+        self.assertEqual(len(set(hashes)), 1, hashes)
 
     def test_names_are_checked(self):
         done = self.run_scene('function corsac.load() corsac.scene.save("../slot") end', "--steps", 2, env=self.env)
