@@ -83,7 +83,9 @@ void gfx_world_destroy(gfx_world *world) {
 }
 
 size_t gfx_world_bytes(const gfx_world *world) {
-    return sizeof *world + core_columns_bytes(&world->lights.set) +
+    size_t made = world->particles ? core_columns_bytes(&world->particles->emitters.set) : 0;
+    made += world->terrains ? core_columns_bytes(&world->terrains->rows.set) : 0;
+    return sizeof *world + made + core_columns_bytes(&world->lights.set) +
            core_columns_bytes(&world->instances.set) + core_columns_bytes(&world->meshes.set) +
            core_columns_bytes(&world->materials.set) + world->commands.bytes + world->text.bytes +
            world->lines.bytes + world->boards.bytes + world->heap_bytes;

@@ -92,6 +92,35 @@ class Ui(SceneCase):
                corsac.metrics.set("full", is("xyza"))""")
         self.assertEqual(user, dict(middle=1, deleted=1, full=1))
 
+    def test_places_of_the_screen_and_picking(self):
+        """A ball in the middle of the frame is where project says, and the ray through that pixel hits it."""
+        done = self.run_scene("""
+          local gfx, ball = corsac.gfx
+          function corsac.load()
+            corsac.phys.setGravity(0, 0, 0)
+            corsac.scene.spawn{ position = { 0, -9, 0 }, mesh = "box" }
+            ball = corsac.phys.newBody{ shape = "sphere", radius = 0.5, position = { 1, 2, -3 } }
+            gfx.setCamera{ position = { 4, 5, 6 }, target = { 1, 2, -3 } }
+          end
+          function corsac.update()
+            local w, h = gfx.getSize()
+            local x, y, ahead = gfx.project(1, 2, -3)
+            corsac.metrics.set("x", x / w) corsac.metrics.set("y", y / h) corsac.metrics.set("ahead", ahead)
+            local ox, oy, oz, dx, dy, dz = gfx.getRay(x, y)
+            local hit = corsac.phys.rayCast(ox, oy, oz, 50 * dx, 50 * dy, 50 * dz)
+            corsac.metrics.set("hit", hit == ball and 1 or 0)
+            local past = corsac.phys.rayCast(ox, oy, oz, 50 * dx, 50 * dy + 5, 50 * dz)
+            corsac.metrics.set("past", past == ball and 1 or 0)
+            local wide, high, lines = gfx.measure("one two", { size = 20, width = 40 })
+            corsac.metrics.set("lines", lines) corsac.metrics.set("high", high)
+          end""", "--steps", 2, "--size", "640x360", "--metrics", "-")
+        self.assert_exit(done, 0)
+        user = json.loads(done.out)["user"]
+        self.assertAlmostEqual(user.pop("x"), 0.5, places=4)
+        self.assertAlmostEqual(user.pop("y"), 0.5, places=4)
+        self.assertAlmostEqual(user.pop("ahead"), 99**0.5, places=3)
+        self.assertEqual(user, dict(hit=1, past=0, lines=2, high=40))
+
     def test_errors_name_what_is_wrong(self):
         for made, said in (('{ type = "buton" }', 'no type "buton"; did you mean "button"?'),
                            ('{ type = "button", pres = print }', 'has no "pres"; did you mean "press"?'),
