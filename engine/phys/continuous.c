@@ -24,7 +24,11 @@ typedef struct guard {
 static core_vec3 start_center(const guard *g, uint32_t row) {
     const phys_bodies *b = &g->world->bodies;
     core_vec3 lc = phys_get3(b->lcx, b->lcy, b->lcz, row);
-    return core_v3_add(phys_get3(b->px, b->py, b->pz, row), phys_rotate(g->before[row], lc));
+    core_vec3 origin = phys_get3(b->px, b->py, b->pz, row);
+    if (lc.x == 0.0f && lc.y == 0.0f && lc.z == 0.0f) {
+        return origin;
+    }
+    return core_v3_add(origin, phys_rotate(g->before[row], lc));
 }
 
 static core_vec3 way_of(const guard *g, uint32_t row) {
