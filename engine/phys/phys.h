@@ -231,7 +231,7 @@ typedef struct phys_field_desc {
     float strength;        // point: towards the centre, strength / distance^2 (m^3/s^2); < 0 repels
     float core;            // point: > 0; inside this distance the pull falls linearly to 0 (m)
     bool bounded;          // acts only on bodies whose centre of mass is inside the region below
-    phys_shape_type shape; // sphere or box
+    phys_shape_type shape; // as in triggers, with the same sizes
     core_vec3 position, half;
     core_quat rotation;
     float radius;

@@ -40,17 +40,23 @@ static int get_collision_rule(script *s, lua_State *L, void *args) {
 
 // ---- regions ----
 
-#define REGION_SHAPES "sphere|box"
-static const phys_shape_type region_types[] = {PHYS_SPHERE, PHYS_BOX};
+#define REGION_SHAPES "sphere|box|capsule|cylinder"
+static const phys_shape_type region_types[] = {PHYS_SPHERE, PHYS_BOX, PHYS_CAPSULE, PHYS_CYLINDER};
 
 typedef struct region_options {
     int shape;
     core_vec3 size, position;
     core_quat rotation;
-    float radius;
+    float radius, height;
     const char *layer;
     bool has_shape;
 } region_options;
+
+// Half extents of a box; half the height of what stands upright.
+static core_vec3 region_half(const region_options *o) {
+    bool tall = region_types[o->shape] == PHYS_CAPSULE || region_types[o->shape] == PHYS_CYLINDER;
+    return core_v3_scale(tall ? core_v3(0, o->height, 0) : o->size, 0.5f);
+}
 
 static uint32_t layer_mask(script *s, lua_State *L, const char *layer) {
     return layer ? 1u << bind_layer(s, L, layer) : 0;
@@ -86,7 +92,7 @@ typedef struct trigger_call {
 static int new_trigger(script *s, lua_State *L, void *args) {
     const trigger_options *o = &((trigger_call *)args)->options;
     phys_trigger_desc desc = phys_trigger_desc_default(region_types[o->region.shape]);
-    desc.half = core_v3_scale(o->region.size, 0.5f);
+    desc.half = region_half(&o->region);
     desc.radius = o->region.radius;
     desc.position = o->region.position;
     desc.rotation = o->region.rotation;
@@ -146,7 +152,7 @@ static int new_field(script *s, lua_State *L, void *args) {
     desc.bounded = o->region.has_shape;
     desc.shape = region_types[o->region.shape];
     desc.position = o->region.position;
-    desc.half = core_v3_scale(o->region.size, 0.5f);
+    desc.half = region_half(&o->region);
     desc.rotation = o->region.rotation;
     desc.radius = o->region.radius;
     desc.layers = layer_mask(s, L, o->region.layer);
@@ -196,11 +202,13 @@ static const bind_arg trigger_fields[] = {
      .def = 1, .values = REGION_SHAPES, BIND_GIVEN(trigger_options, region.has_shape)},
     {"size", BIND_VEC3, REGION(trigger_options, size), "box: lengths of its edges", "m",
      BIND_POSITIVE, .optional = true, .def_vec = {1, 1, 1}, .uniform = true},
-    {"radius", BIND_FLOAT, REGION(trigger_options, radius), "sphere", "m", BIND_POSITIVE,
-     .optional = true, .def = 0.5},
+    {"radius", BIND_FLOAT, REGION(trigger_options, radius), "sphere, capsule, cylinder", "m",
+     BIND_POSITIVE, .optional = true, .def = 0.5},
+    {"height", BIND_FLOAT, REGION(trigger_options, height),
+     "cylinder: whole; capsule: its straight part", "m", BIND_POSITIVE, .optional = true, .def = 1},
     {"position", BIND_VEC3, REGION(trigger_options, position), "of its centre", "m",
      .optional = true},
-    {"rotation", BIND_QUAT, REGION(trigger_options, rotation), "box", .optional = true,
+    {"rotation", BIND_QUAT, REGION(trigger_options, rotation), "of the region", .optional = true,
      .def_text = "none"},
     {"layer", BIND_STRING, REGION(trigger_options, layer),
      "sees only bodies of this layer; without, all", .optional = true},
@@ -229,11 +237,13 @@ static const bind_arg field_fields[] = {
      BIND_GIVEN(field_options, region.has_shape)},
     {"size", BIND_VEC3, REGION(field_options, size), "box: lengths of its edges", "m",
      BIND_POSITIVE, .optional = true, .def_vec = {1, 1, 1}, .uniform = true},
-    {"radius", BIND_FLOAT, REGION(field_options, radius), "sphere", "m", BIND_POSITIVE,
-     .optional = true, .def = 0.5},
+    {"radius", BIND_FLOAT, REGION(field_options, radius), "sphere, capsule, cylinder", "m",
+     BIND_POSITIVE, .optional = true, .def = 0.5},
+    {"height", BIND_FLOAT, REGION(field_options, height),
+     "cylinder: whole; capsule: its straight part", "m", BIND_POSITIVE, .optional = true, .def = 1},
     {"position", BIND_VEC3, REGION(field_options, position), "of the region's centre", "m",
      .optional = true},
-    {"rotation", BIND_QUAT, REGION(field_options, rotation), "box", .optional = true,
+    {"rotation", BIND_QUAT, REGION(field_options, rotation), "of the region", .optional = true,
      .def_text = "none"},
     {"layer", BIND_STRING, REGION(field_options, layer),
      "acts only on bodies of this layer; without, on all", .optional = true},

@@ -1797,11 +1797,12 @@ function corsac.phys.setCollisionRule(a, b, collide) end
 function corsac.phys.getCollisionRule(a, b) end
 
 ---@class corsac.phys.newTrigger.options
----@field shape? "sphere"|"box" form of the region
+---@field shape? "sphere"|"box"|"capsule"|"cylinder" form of the region
 ---@field size? number|number[] box: lengths of its edges, m
----@field radius? number sphere, m
+---@field radius? number sphere, capsule, cylinder, m
+---@field height? number cylinder: whole; capsule: its straight part, m
 ---@field position? number[] of its centre, m
----@field rotation? number[]|corsac.AxisAngle box
+---@field rotation? number[]|corsac.AxisAngle of the region
 ---@field layer? string sees only bodies of this layer; without, all
 ---@field onEnter? function called with body and trigger, once a visit
 ---@field onStay? function in every step between
@@ -1819,11 +1820,12 @@ function corsac.phys.newTrigger(options) end
 ---@field center? number[] point: what it pulls towards, m
 ---@field strength? number point: acceleration times distance squared; negative repels, m^3/s^2
 ---@field core? number point: inside this distance the pull falls to zero, m
----@field shape? "sphere"|"box" acts only inside this region
+---@field shape? "sphere"|"box"|"capsule"|"cylinder" acts only inside this region
 ---@field size? number|number[] box: lengths of its edges, m
----@field radius? number sphere, m
+---@field radius? number sphere, capsule, cylinder, m
+---@field height? number cylinder: whole; capsule: its straight part, m
 ---@field position? number[] of the region's centre, m
----@field rotation? number[]|corsac.AxisAngle box
+---@field rotation? number[]|corsac.AxisAngle of the region
 ---@field layer? string acts only on bodies of this layer; without, on all
 
 ---Makes a force field.
