@@ -205,7 +205,8 @@ typedef struct nav_mesh_desc {
     float max_climb;    // m, default 0.4: the highest step
     float max_slope;    // rad from level, default 0.79 (45 degrees); 0..1.5
     // m; 0: none. Instead of cell_size: all level ground further than agent_radius + max_error from
-    // walls and ledges belongs to the surface, nothing nearer than agent_radius does.
+    // walls and ledges belongs to the surface; nothing nearer than agent_radius to walls does, nor
+    // nearer by more than a cell to ledges.
     float max_error;
     // Side of a tile in cells, 8..1024; 0: one tile, that no later change can renew. A change makes
     // only its tiles anew; they cost searches over wide ground some time (docs/navigation.md).

@@ -145,7 +145,8 @@ def draw(exp, rows, path):
 VERDICTS = {"stable": "#d9ead9", "explodes": "#7a0c0c", "falls": "#7a0c0c", "tunnels": "#7a0c0c", "sinks": "#d1495b",
             "drifts": "#edae49", "gains energy": "#d1495b", "loses energy": "#00798c", "oscillates": "#9c89b8",
             "shadows itself": "#7a0c0c", "leaks": "#edae49", "fights": "#d1495b", "mostly over": "#d1495b",
-            "overflows": "#edae49", "pops": "#d1495b", "leaks much": "#7a0c0c"}
+            "overflows": "#edae49", "pops": "#d1495b", "leaks much": "#7a0c0c", "overlaps": "#d1495b",
+            "does not arrive": "#edae49", "promised": "#7a0c0c", "not climbed": "#edae49"}
 
 
 def share(axis, value):

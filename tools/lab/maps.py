@@ -5,7 +5,7 @@ depth = times that cells on the border are halved (default 3);
 criteria = [{name, key, op, value}]: the first that a run fulfils is its verdict, else "stable"; a run
 that breaks down or lacks the key has the verdict of the first criterion. Names are explodes, falls,
 tunnels, sinks, drifts, gains energy, loses energy, oscillates, shadows itself, leaks, fights,
-mostly over, overflows, leaks much, pops.
+mostly over, overflows, leaks much, pops, overlaps, does not arrive, promised, not climbed.
 """
 
 import math
