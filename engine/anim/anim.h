@@ -242,6 +242,12 @@ bool anim_machine_trim(anim_world *world, anim_machine machine, uint32_t states,
                        uint32_t transitions);
 void anim_machine_size(const anim_world *world, anim_machine machine, uint32_t *states,
                        uint32_t *transitions);
+// One state and one transition, for those who draw the machine: false beyond the last. Names live
+// as long as the machine; `within` and `from` are "" without one.
+bool anim_machine_state_at(const anim_world *world, anim_machine machine, uint32_t i,
+                           const char **name, const char **within);
+bool anim_machine_transition_at(const anim_world *world, anim_machine machine, uint32_t i,
+                                const char **from, const char **to);
 bool anim_machine_destroy(anim_world *world, anim_machine machine); // false while in use
 bool anim_machine_alive(const anim_world *world, anim_machine machine);
 // Graphviz text of the machine; core_free it. `instance` (null: none) marks its present state.
@@ -316,6 +322,7 @@ bool anim_instance_set_parameter(anim_world *world, anim_instance instance, cons
 bool anim_instance_parameter(const anim_world *world, anim_instance instance, const char *name,
                              float *out);
 bool anim_instance_send(anim_world *world, anim_instance instance, const char *event);
+anim_machine anim_instance_machine(const anim_world *world, anim_instance instance); // null: none
 // Whether the named state is the current one or holds it.
 bool anim_instance_in(const anim_world *world, anim_instance instance, const char *state);
 const char *anim_instance_state(const anim_world *world, anim_instance instance); // "" without one

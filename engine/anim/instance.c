@@ -437,6 +437,11 @@ const char *anim_instance_state(const anim_world *w, anim_instance h) {
     return anim_get_machine(w, w->players.machine[p])->state[w->players.now[p].state].name;
 }
 
+anim_machine anim_instance_machine(const anim_world *w, anim_instance h) {
+    uint32_t row, p = player_row(w, h, &row);
+    return p == CORE_NO_ROW ? CORE_NULL_HANDLE : w->players.machine[p];
+}
+
 bool anim_instance_in(const anim_world *w, anim_instance h, const char *state) {
     uint32_t row, p = player_row(w, h, &row);
     const anim_machine_res *m = p == CORE_NO_ROW ? NULL : machine_of(w, p);

@@ -357,6 +357,32 @@ bool anim_machine_trim(anim_world *w, anim_machine h, uint32_t states, uint32_t 
     return true;
 }
 
+static const char *name_of(const anim_machine_res *m, int32_t state) {
+    return state < 0 ? "" : m->state[state].name;
+}
+
+bool anim_machine_state_at(const anim_world *w, anim_machine h, uint32_t i, const char **name,
+                           const char **within) {
+    const anim_machine_res *m = anim_get_machine(w, h);
+    if (!m || i >= m->state_count) {
+        return false;
+    }
+    *name = m->state[i].name;
+    *within = name_of(m, m->state[i].parent);
+    return true;
+}
+
+bool anim_machine_transition_at(const anim_world *w, anim_machine h, uint32_t i, const char **from,
+                                const char **to) {
+    const anim_machine_res *m = anim_get_machine(w, h);
+    if (!m || i >= m->transition_count) {
+        return false;
+    }
+    *from = name_of(m, m->transition[i].from);
+    *to = name_of(m, m->transition[i].to);
+    return true;
+}
+
 bool anim_machine_destroy(anim_world *w, anim_machine h) {
     anim_machine_res *m = anim_get_machine(w, h);
     if (!m) {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { PAGE_NONE, PAGE_STAGES, PAGE_SETTINGS, PAGE_CONSOLE, PAGE_COUNT };
+enum { VIEWS = 2 }; // that the settings switch: physics, state machine
 enum { HISTORY = 180, LOG_LINES = 16, LOG_WIDTH = 160, CODE_MAX = 256 };
 enum {
     KEY_ENTER = 257,
@@ -21,10 +22,11 @@ enum { LINE = 16, LEFT = 10, WIDTH = 460, GRAPH = 90 }; // pixels
 
 struct app_overlay {
     int page;
-    bool physics; // shapes of bodies as lines
+    bool physics;  // shapes of bodies as lines
+    bool machines; // the state machine nearest to the camera
     float step_ms[HISTORY], stage_ms[CORE_STAGE_TOTAL][HISTORY];
     uint32_t steps; // remembered so far
-    uint32_t row;   // of the settings: 0 physics, then those of gfx
+    uint32_t row;   // of the settings: the overlay's own views, then those of gfx
     char log[LOG_LINES][LOG_WIDTH];
     uint32_t lines;
     char code[CODE_MAX], wanted[CODE_MAX]; // being typed; to be run by the next step
@@ -85,16 +87,17 @@ void app_overlay_step(app_run *r) {
 static void change_setting(app_run *r, int direction) {
     app_overlay *o = r->overlay;
     gfx_world *world = scene_gfx_if(r->scene);
-    if (o->row == 0) {
-        o->physics = !o->physics;
+    if (o->row < VIEWS) {
+        bool *view = o->row == 0 ? &o->physics : &o->machines;
+        *view = !*view;
     } else if (world) {
-        gfx_world_nudge(world, o->row - 1, direction);
+        gfx_world_nudge(world, o->row - VIEWS, direction);
     }
 }
 
 static bool settings_key(app_run *r, int code) {
     app_overlay *o = r->overlay;
-    uint32_t rows = 1 + gfx_world_setting_count();
+    uint32_t rows = VIEWS + gfx_world_setting_count();
     if (code == KEY_UP || code == KEY_DOWN) {
         o->row = (o->row + (code == KEY_DOWN ? 1 : rows - 1)) % rows;
     } else if (code == KEY_LEFT || code == KEY_RIGHT) {
@@ -220,18 +223,31 @@ static float draw_counts(const app_run *r, gfx_world *world, float y) {
     return y + LINE;
 }
 
+static void draw_mods(const app_run *r, gfx_world *world, float y) {
+    static script_mod_info mod[APP_MAX_MODS];
+    int count = CORE_MIN(script_mods_info(r->script, mod, APP_MAX_MODS), APP_MAX_MODS);
+    double steps = (double)CORE_MAX(r->report.steps, UINT64_C(1));
+    for (int i = 0; i < count; ++i, y += LINE) {
+        char text[160];
+        snprintf(text, sizeof text, "mod %-16s%s %7.0f instr/step %.3f ms/step %zu KiB %u errors",
+                 mod[i].name, mod[i].enabled ? "" : " off", (double)mod[i].instructions / steps,
+                 mod[i].ms / steps, mod[i].bytes >> 10, mod[i].errors);
+        text_line(world, y, mod[i].errors || !mod[i].enabled ? bright : ink, text);
+    }
+}
+
 static float draw_settings(const app_run *r, gfx_world *world, float y) {
     const app_overlay *o = r->overlay;
-    uint32_t rows = 1 + gfx_world_setting_count();
+    uint32_t rows = VIEWS + gfx_world_setting_count();
     uint32_t seen = CORE_MAX(r->height / LINE, 5u) - 3,
              first = o->row < seen ? 0 : o->row - seen + 1;
     for (uint32_t i = first; i < rows && i < first + seen; ++i, y += LINE) {
         char text[128], value[64] = "";
-        const char *name = "physics";
-        if (i == 0) {
-            snprintf(value, sizeof value, "%s", o->physics ? "on" : "off");
+        const char *name = i == 0 ? "physics" : "state machine";
+        if (i < VIEWS) {
+            snprintf(value, sizeof value, "%s", (i == 0 ? o->physics : o->machines) ? "on" : "off");
         } else {
-            name = gfx_world_setting(world, i - 1, value, sizeof value);
+            name = gfx_world_setting(world, i - VIEWS, value, sizeof value);
         }
         snprintf(text, sizeof text, "%s %-18s%s", i == o->row ? ">" : " ", name, value);
         text_line(world, y, i == o->row ? bright : ink, text);
@@ -296,6 +312,9 @@ void app_overlay_draw(app_run *r) {
     if (o->physics) {
         draw_physics(r, world);
     }
+    if (o->machines) {
+        app_overlay_machine(r);
+    }
     if (o->page == PAGE_NONE) {
         return;
     }
@@ -311,7 +330,8 @@ void app_overlay_draw(app_run *r) {
     y += LINE + 6;
     if (o->page == PAGE_STAGES) {
         y = draw_stages(r, world, y);
-        draw_counts(r, world, y);
+        y = draw_counts(r, world, y);
+        draw_mods(r, world, y + 6);
     } else if (o->page == PAGE_SETTINGS) {
         draw_settings(r, world, y);
     } else {

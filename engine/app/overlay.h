@@ -14,5 +14,7 @@ void app_overlay_destroy(app_overlay *overlay); // NULL is fine
 bool app_overlay_event(app_run *r, const gfx_event *event);
 void app_overlay_step(app_run *r); // remembers what the step cost, runs what the console was told
 void app_overlay_draw(app_run *r); // after the scene's own drawing
+// overlay_machine.c: states and transitions of the animated skeleton nearest to the camera, live.
+void app_overlay_machine(app_run *r);
 
 #endif

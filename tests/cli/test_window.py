@@ -74,6 +74,23 @@ class Window(SceneCase):
         _, err = shot("key:F1 key:F1 key:F1 key:7 key:Return wait:0.4", "--record", self.dir / "run.rec", steps=240)
         self.assertIn("the console is closed while a run is recorded", err)
 
+    def test_overlay_draws_the_state_machine(self):
+        text = """
+            function corsac.load()
+              local bones = corsac.anim.newSkeleton{ { name = "root" } }
+              local clip = corsac.anim.newClip{ skeleton = bones, duration = 1, keys = { { bone = "root", time = 0 } } }
+              corsac.anim.newAnimator(bones, corsac.anim.newMachine{
+                states = { { name = "idle", clip = clip }, { name = "walk", clip = clip } },
+                transitions = { { from = "idle", to = "walk", event = "go" } } })
+            end"""
+        shots = []
+        for keys in ("wait:0.1", "key:F1 key:F1 key:Down key:Right key:F1 key:F1"):
+            path = self.dir / f"machine{len(shots)}.png"
+            code, _, err = self.press(keys, text, "--size", "900x500", "--steps", 240, "--shot", f"{path}@240")
+            self.assertEqual(code, 0, err)
+            shots.append(path)
+        self.assertGreater(png.compare(*shots), 0.1)  # its panel is a quarter of the picture
+
     def test_pause_and_single_step(self):
         # Paused somewhere after step 20; two single steps later there are two steps more, and no others.
         code, _, err = self.press("saw:step=20. key:F4 wait:0.8 key:F3 wait:0.3 key:F3 wait:0.3 key:Escape",
