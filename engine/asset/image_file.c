@@ -1,6 +1,7 @@
 // Images through stb_image, with the size looked at before anything is decoded.
 #include "asset/asset.h"
 #include "asset/bytes.h"
+#include "core/radiance.h"
 
 #include <limits.h>
 #include <stb_image.h>
@@ -23,7 +24,9 @@ static bool check_size(const void *bytes, size_t size, const char *path) {
                          "pixels",
                          path, w, h, IMAGE_MAX_SIDE, IMAGE_MAX_PIXELS);
     }
-    return true;
+    return !stbi_is_hdr_from_memory(bytes, (int)size) ||
+           core_radiance_complete(bytes, size, (uint32_t)w, (uint32_t)h) ||
+           core_fail("%s: image is corrupt: rows are missing", path);
 }
 
 core_image_data *asset_image_decode(const void *bytes, size_t size, const char *path,

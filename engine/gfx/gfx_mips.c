@@ -2,6 +2,7 @@
 
 #include "core/math.h"
 #include "core/memory.h"
+#include "core/radiance.h"
 
 #include <stb_image.h>
 
@@ -148,42 +149,6 @@ void gfx_mips_from_bytes(const uint8_t *rgba, uint32_t width, uint32_t height, b
     make_levels(out);
 }
 
-// The rows of a Radiance picture of `width`, packed or plain, are all there (Ward 1991). stb_image
-// before 2.29 never returns from a packed row that is cut off.
-static bool rows_complete(const uint8_t *at, const uint8_t *end, uint32_t width, uint32_t height) {
-    bool packed = width >= 8 && width < 32768;
-    for (uint32_t y = 0; y < height; ++y) {
-        packed = packed && end - at >= 4 && at[0] == 2 && at[1] == 2 && at[2] < 128;
-        if (!packed) { // from the first plain row on all are plain
-            return (uint64_t)(end - at) >= (uint64_t)width * (height - y) * 4;
-        }
-        at += 4;
-        for (uint32_t left = 4 * width; left > 0;) {
-            uint32_t part = left % width ? left % width : width; // runs end with their channel
-            if (at == end || *at == 0) {
-                return false;
-            }
-            uint32_t run = *at > 128 ? *at - 128u : *at, bytes = *at > 128 ? 2 : 1 + run;
-            if (run > part || (size_t)(end - at) < bytes) {
-                return false;
-            }
-            at += bytes;
-            left -= run;
-        }
-    }
-    return true;
-}
-
-static bool hdr_complete(const uint8_t *file, size_t size, uint32_t width, uint32_t height) {
-    for (size_t i = 0; i + 3 < size; ++i) { // the line of the size follows an empty one
-        if (memcmp(file + i, "\n\n-Y", 4) == 0) {
-            const uint8_t *line = memchr(file + i + 2, '\n', size - i - 2);
-            return line && rows_complete(line + 1, file + size, width, height);
-        }
-    }
-    return false;
-}
-
 bool gfx_mips_check(const char *path, const void *file, size_t size) {
     int width, height, channels;
     if (size > INT_MAX || !stbi_info_from_memory(file, (int)size, &width, &height, &channels)) {
@@ -199,7 +164,7 @@ bool gfx_mips_check(const char *path, const void *file, size_t size) {
                          path, width, height, GFX_MIPS_MAX_SIDE, GFX_MIPS_MAX_PIXELS);
     }
     return !stbi_is_hdr_from_memory(file, (int)size) ||
-           hdr_complete(file, size, (uint32_t)width, (uint32_t)height) ||
+           core_radiance_complete(file, size, (uint32_t)width, (uint32_t)height) ||
            core_fail("%s: the picture is cut off or broken", path);
 }
 
