@@ -72,7 +72,9 @@ static void fill(nav_world *w, const nav_mesh_data *m, nav_flow_data *f, core_ve
     f->count = w->views.count;
     nav_view *view = nav_buffer_fit(&f->views, ((size_t)f->count + 1) * sizeof *view);
     uint32_t *next = nav_buffer_fit(&f->next, ((size_t)f->count + 1) * sizeof *next);
-    memcpy(view, w->views.view, f->count * sizeof *view);
+    if (f->count > 0) {
+        memcpy(view, w->views.view, f->count * sizeof *view);
+    }
     for (uint32_t i = f->count; i-- > 0;) { // nearest first
         next[i] = first[view[i].polygon];
         first[view[i].polygon] = i;
