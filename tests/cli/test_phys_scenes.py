@@ -22,6 +22,14 @@ class PhysScenes(SceneCase):
         self.assertEqual(len(hashes), 1, hashes)
         self.assertRegex(hashes.pop(), r"^[0-9a-f]{16}$")
 
+    def test_one_hash_of_cloth_and_movers(self):
+        for name in ("ropes", "mover"):
+            args = ("run", ROOT / f"scripts/scenes/phys/{name}.lua", "--headless", "--quiet", "--hash",
+                    "--steps", "150", "--keep-going")
+            runs = [("--threads", "1"), ("--threads", "2"), ("--simd", "sse2"), ("--simd", "avx2")]
+            hashes = {corsac(*args, *run).out.strip() for run in runs}
+            self.assertEqual(len(hashes), 1, (name, hashes))
+
 
 if __name__ == "__main__":
     unittest.main()
