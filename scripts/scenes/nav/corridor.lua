@@ -5,6 +5,7 @@ local gap = corsac.param("gap", 2.4)
 local nav, scene, gfx = corsac.nav, corsac.scene, corsac.gfx
 local show = corsac.param("show", false)
 local surface, agents, worst, last = nil, {}, 0, 0
+local px, pz = {}, {}
 
 function corsac.conf(t) t.steps = 60 * (100 + n * (gap < 1.8 and 12 or 1)) end
 
@@ -32,7 +33,7 @@ function corsac.load()
 end
 
 function corsac.fixed(dt)
-    local arrived, px, pz = 0, {}, {}
+    local arrived = 0
     for i, agent in ipairs(agents) do
         local _
         px[i], _, pz[i] = agent:getPosition()
