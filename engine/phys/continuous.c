@@ -18,6 +18,8 @@ typedef struct guard {
     phys_world *world;
     const core_quat *before; // rotations at the start of the step, by row
     float *stop;             // by row: s into the step; dt: went all the way
+    core_vec3 *way;          // by row: m in the step
+    float *turn;             // by row: rad in the step, at least
     float dt;
 } guard;
 
@@ -65,28 +67,44 @@ static float thinnest(const phys_shapes *s, uint32_t i) {
     }
 }
 
-// Farther than its core is deep. Cheap: asked of every body.
+static float turning_arm(const phys_shapes *s, uint32_t i) {
+    return s->type[i] == PHYS_SPHERE ? core_v3_length(s->position[i]) : phys_shape_extent(s, i);
+}
+
+// A way (m) longer than its core is deep.
+static bool is_far(const phys_shapes *s, uint32_t i, float way) {
+    return way > depth_of_core(thinnest(s, i));
+}
+
+// Cheap: asked of every body.
 static bool went_far(const guard *g, uint32_t row) {
     const phys_world *w = g->world;
     core_quat p = g->before[row], q = phys_body_quat(&w->bodies, row);
-    core_vec3 way = way_of(g, row);
+    core_vec3 way = g->way[row] = way_of(g, row);
     float dot = p.x * q.x + p.y * q.y + p.z * q.z + p.w * q.w;
     float way2 = core_v3_dot(way, way), sine2 = CORE_MAX(1.0f - dot * dot, 0.0f);
-    if (way2 < SLOW_WAY * SLOW_WAY && sine2 < SLOW_TURN * SLOW_TURN) {
+    float turn = g->turn[row] = CORE_PI_F * core_sqrtf(sine2); // at least the angle
+    if (!phys_mobile(&w->bodies, row) || !phys_meets_some(w, row) ||
+        (way2 < SLOW_WAY * SLOW_WAY && sine2 < SLOW_TURN * SLOW_TURN)) {
         return false;
     }
-    float far = core_sqrtf(way2), turn = CORE_PI_F * core_sqrtf(sine2); // at least the angle
     for (uint32_t slot = w->bodies.shape[row]; slot != 0;) {
         uint32_t i = phys_slot_row(&w->shapes.set, slot);
-        float thin = depth_of_core(thinnest(&w->shapes, i));
-        float arm = w->shapes.type[i] == PHYS_SPHERE ? core_v3_length(w->shapes.position[i])
-                                                     : phys_shape_extent(&w->shapes, i);
-        if (far + turn * arm > thin) {
+        if (is_far(&w->shapes, i, core_sqrtf(way2) + turn * turning_arm(&w->shapes, i))) {
             return true;
         }
         slot = w->shapes.next[i];
     }
     return false;
+}
+
+// Whether two shapes went far against each other: what falls side by side did not.
+static bool went_apart(const guard *g, uint32_t i, uint32_t row, uint32_t j, uint32_t other) {
+    const phys_shapes *s = &g->world->shapes;
+    float way = core_v3_length(core_v3_sub(g->way[row], g->way[other]));
+    float turns = g->turn[row] * turning_arm(s, i);
+    turns += g->turn[other] != 0.0f ? g->turn[other] * turning_arm(s, j) : 0.0f;
+    return is_far(s, i, way + turns);
 }
 
 // A shape as it moves from time t0 on; once stopped, it stands.
@@ -218,7 +236,8 @@ static float first_stop(const guard *g, uint32_t row, uint32_t *found) {
         uint32_t n = find_near(g, &box, found);
         for (uint32_t k = 0; k < n; k++) {
             uint32_t j = found[k], other = s->row[j];
-            if (!phys_pair_wanted(w, i, j) || (w->bodies.flags[other] & PHYS_BODY_LOST)) {
+            if (!phys_pair_wanted(w, i, j) || (w->bodies.flags[other] & PHYS_BODY_LOST) ||
+                (g->stop[other] == g->dt && !went_apart(g, i, row, j, other))) {
                 continue;
             }
             meets(g, i, row, j, other, 0.0f, &best);
@@ -255,11 +274,16 @@ core_quat *phys_continuous_begin(phys_world *w) {
 
 void phys_continuous_end(phys_world *w, const core_quat *rotations, float dt) {
     uint32_t n = core_columns_count(&w->bodies.set), count = 0;
-    guard g = {w, rotations, CORE_ARENA_ARRAY(&w->scratch, float, n + 1), dt};
+    guard g = {.world = w, .before = rotations, .dt = dt};
+    g.stop = CORE_ARENA_ARRAY(&w->scratch, float, n + 1);
+    g.way = CORE_ARENA_ARRAY(&w->scratch, core_vec3, n + 1);
+    g.turn = CORE_ARENA_ARRAY(&w->scratch, float, n + 1);
     uint32_t *row = CORE_ARENA_ARRAY(&w->scratch, uint32_t, n + 1);
     for (uint32_t i = 0; i < n; i++) {
         g.stop[i] = dt;
-        if (phys_mobile(&w->bodies, i) && phys_meets_some(w, i) && went_far(&g, i)) {
+        g.way[i] = core_v3(0, 0, 0);
+        g.turn[i] = 0.0f;
+        if (w->bodies.type[i] != PHYS_STATIC && went_far(&g, i)) {
             row[count++] = i;
         }
     }

@@ -208,7 +208,7 @@ int phys_level_substeps(const phys_world *w, uint32_t level) {
 }
 
 static uint8_t island_level(const phys_world *w, const island *s, float dt) {
-    if (is_chain(s) && !s->touched) {
+    if (is_chain(s) && !s->touched && !w->joints_iterate) {
         return chain_level(w, s, dt);
     }
     if (is_net(s)) {

@@ -6,9 +6,11 @@
 
 // Sweeps over what is left to iteration. Speeds carry on from substep to substep, so that few do;
 // what relaxation leaves over the next substep finds. Rods get one: more substeps (PHYS_LEVEL_NET)
-// serve cloth better than more sweeps.
+// serve cloth better than more sweeps. Not where substeps are long: one sweep then feeds a swinging
+// cloth.
 #define SWEEPS_SOLVE 2
 #define SWEEPS_RELAX 1
+#define ROD_SUBSTEP  0.0022f // s
 
 // joint_body of a row of bodies, made at first sight.
 static uint32_t body_of(soft_joints *s, uint32_t *known, const uint32_t *index, uint32_t row) {
@@ -171,7 +173,9 @@ static void note_end(soft_joints *s, uint32_t i) {
 }
 
 static void classify(soft_joints *s) {
-    joint_tree_choose(s);
+    if (!s->world->joints_iterate) {
+        joint_tree_choose(s);
+    }
     joint_chains_build(s);
     joint_tree_build(s);
     s->general = CORE_ARENA_ARRAY(&s->world->scratch, uint32_t, s->count);
@@ -261,10 +265,10 @@ static void run_colors(soft_joints *s, soft_pass pass, int sweep) {
     }
     for (uint32_t c = 0; c <= JOINT_COLORS; c++) {
         for (job.kind = 0; job.kind < JOINT_LANE_KINDS; job.kind++) {
-            if (job.kind == JOINT_LANES_ROD && sweep > 0) {
+            uint32_t count = s->first[job.kind][c + 1] - s->first[job.kind][c];
+            if (count == 0 || (job.kind == JOINT_LANES_ROD && sweep > 0 && s->h < ROD_SUBSTEP)) {
                 continue;
             }
-            uint32_t count = s->first[job.kind][c + 1] - s->first[job.kind][c];
             job.first = s->first[job.kind][c];
             core_jobs_for(s->world->jobs, count, c < JOINT_COLORS ? 8 : UINT32_MAX, run_blocks,
                           &job);

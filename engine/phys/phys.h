@@ -56,7 +56,8 @@ core_vec3 phys_world_gravity(const phys_world *world);
 // reaches. "friction", "restitution": how two materials become one: product, geometric (the default
 // of friction), average, least, most (the default of restitution). "integrator": of bodies that
 // touch nothing and hang on nothing; "auto" takes, body by body, the exact term under constant
-// forces and rk4 where there are fields, functions or drag. False + core_fail naming the nearest
+// forces and rk4 where there are fields, functions or drag. "joints": chains and trees by "direct"
+// solution (default) or, as a baseline, "iterate" as nets are. False + core_fail naming the nearest
 // name or the allowed values.
 bool phys_world_set(phys_world *world, const char *name, const char *value);
 // NULL-terminated list of names for a method kind: "solver", "broad", "narrow", "integrator".

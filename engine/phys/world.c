@@ -176,9 +176,9 @@ static bool set_int(const char *name, const char *value, int lo, int hi, int *ou
 }
 
 bool phys_world_set(phys_world *w, const char *name, const char *value) {
-    static const char *const names[] = {"broad",      "cloth",      "friction",
-                                        "integrator", "iterations", "restitution",
-                                        "sleep",      "solver",     "substeps"};
+    static const char *const names[] = {"broad",      "cloth",   "friction",    "integrator",
+                                        "iterations", "joints",  "restitution", "sleep",
+                                        "solver",     "substeps"};
     if (strcmp(name, "friction") == 0 || strcmp(name, "restitution") == 0) {
         bool good =
             phys_set_mixing(name, value, name[0] == 'f' ? &w->mix_friction : &w->mix_restitution);
@@ -192,6 +192,14 @@ bool phys_world_set(phys_world *w, const char *name, const char *value) {
         }
         w->cloth_iterates = iterates;
         phys_cloths_wake(w);
+        return true;
+    }
+    if (strcmp(name, "joints") == 0) {
+        bool iterates = strcmp(value, "iterate") == 0;
+        if (!iterates && strcmp(value, "direct") != 0) {
+            return core_fail("phys setting joints: '%s', expected direct or iterate", value);
+        }
+        w->joints_iterate = iterates;
         return true;
     }
     if (strcmp(name, "broad") == 0) {

@@ -338,6 +338,7 @@ struct phys_world {
     void *force_ctx;
     uint8_t mix_friction, mix_restitution; // rules of material.c
     bool sleep;
+    bool joints_iterate;                 // chains and trees are left to sweeps: a baseline
     uint32_t layers;                     // bit per layer that some body with a shape is in
     uint32_t islands;                    // of the last step
     uint32_t level_islands[PHYS_LEVELS]; // awake ones

@@ -99,6 +99,16 @@ static void chain_energy(float swing) {
 static void test_chain_keeps_energy(void) { chain_energy(0); }
 static void test_chain_keeps_energy_sideways(void) { chain_energy(0.4f); }
 
+// What direct solution is for: the same chain left to sweeps opens by a link's length and more.
+static void test_chain_iterated_opens(void) {
+    TEST_ASSERT_FALSE(phys_world_set(w, "joints", "best"));
+    TEST_ASSERT_TRUE(phys_world_set(w, "joints", "iterate"));
+    double iterated = chain(50, 100, 300);
+    tearDown();
+    setUp();
+    TEST_ASSERT_TRUE(chain(50, 100, 300) < 0.1 * iterated);
+}
+
 // Substeps follow the load: few for a calm chain, more where a heavy end pulls its links taut.
 static void chain_substeps(float ratio, int steps, int coarse, int fine, int most) {
     hang_chain(w, 20, ratio, 0);
@@ -441,6 +451,7 @@ int main(void) {
     RUN_TEST(test_chain_keeps_energy);
     RUN_TEST(test_chain_keeps_energy_sideways);
     RUN_TEST(test_chain_force);
+    RUN_TEST(test_chain_iterated_opens);
     RUN_TEST(test_chain_calm_is_coarse);
     RUN_TEST(test_chain_taut_is_fine);
     RUN_TEST(test_chain_very_heavy);

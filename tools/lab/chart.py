@@ -146,7 +146,7 @@ VERDICTS = {"stable": "#d9ead9", "explodes": "#7a0c0c", "falls": "#7a0c0c", "tun
             "drifts": "#edae49", "gains energy": "#d1495b", "loses energy": "#00798c", "oscillates": "#9c89b8",
             "shadows itself": "#7a0c0c", "leaks": "#edae49", "fights": "#d1495b", "mostly over": "#d1495b",
             "overflows": "#edae49", "pops": "#d1495b", "leaks much": "#7a0c0c", "overlaps": "#d1495b",
-            "does not arrive": "#edae49", "promised": "#7a0c0c", "not climbed": "#edae49"}
+            "does not arrive": "#edae49", "promised": "#7a0c0c", "not climbed": "#edae49", "breaks": "#7a0c0c"}
 
 
 def share(axis, value):

@@ -117,7 +117,7 @@ class Runs:
         done = subprocess.run([str(self.programs[engine]), *words.split()], capture_output=True, text=True,
                               env=env, timeout=600, check=False)
         try:
-            return json.loads(done.stdout)
+            return {**json.loads(done.stdout), "lost": "no longer finite" in done.stderr}
         except json.JSONDecodeError:
             return {}
 
@@ -192,7 +192,7 @@ def main():
     result = {}
     if not args.front:
         result = {"speed": speed_table(runs, engines, rows), "errors": error_table(runs, once, ERROR)}
-    if not args.quick:
+    if args.front or not args.quick:
         chart = (ROOT / "docs/charts" if args.publish else args.out) / "peers_front.svg"
         result["front"] = front.run(runs, once, chart)
     name = "peers_front.json" if args.front else "peers.json"

@@ -13,7 +13,7 @@ SCENES = [  # title, words, time, error, scale, label of the error
     ("S7 chain of 50, end 1:100", "s7 --n=50 --arg=100", "ms_med", "joint_err_max", 1e3, "worst gap, mm"),
     ("S9 cloth of rods 40x40", "s9 --n=40 --steps=300", "ms_med", "rod_err_mean_worst", 1e2, "mean rod error, %"),
 ]
-OWN = ("auto", "2", "4", "8", "16", "32")  # Corsac's substeps
+OWN = ("auto", "2", "4", "8", "12", "16", "24", "32")  # Corsac's substeps
 PRESETS = ("0", "1", "2")  # of a peer, see its adapter
 COLORS = {"corsac": "#c1440e", "box3d": "#3a6ea5", "bullet": "#5b8c5a", "ode": "#8e6c8a"}
 FLOOR = 1e-4  # smaller errors are drawn here
@@ -33,7 +33,7 @@ def measure(runs, engine, scene):
         os.environ.pop("CORSAC_SUBSTEPS", None)
         ms = [r[time] for r in done if isinstance(r.get(time), (int, float))]
         off = [r[error] * scale for r in done if isinstance(r.get(error), (int, float))]
-        fell = any(r.get("nan") or r.get("fell_at_s", -1) >= 0 for r in done)
+        fell = any(r.get("nan") or r.get("lost") or r.get("fell_at_s", -1) >= 0 for r in done)
         if ms and off and not fell and math.isfinite(off[0]):
             points.append((setting, statistics.median(ms), max(abs(statistics.median(off)), FLOOR)))
     return points
