@@ -27,7 +27,7 @@ class Usage(SceneCase):
 
     def test_help_goes_to_stdout(self):
         done = corsac("run", "--help")
-        self.assert_exit(done, 0, "--headless", "--metrics FILE.json|-", "--shot FILE.png[@STEP]")
+        self.assert_exit(done, 0, "--headless", "--metrics FILE.json|-", "--shot FILE.png[:PASS][@STEP]")
         self.assertEqual(done.err, "")
         self.assert_exit(corsac("help"), 0, "corsac new DIR")
 
@@ -47,7 +47,7 @@ class Usage(SceneCase):
                 (("--size", "8x8"), "--size is '8x8', expected WIDTHxHEIGHT"),
                 (("--set", "n"), "--set is 'n', expected NAME=VALUE"),
                 (("--shot", "x.jpg"), "--shot is 'x.jpg', expected a file name that ends in .png"),
-                (("--shot", "x.png@0"), "expected FILE.png or FILE.png@STEP with STEP from 1"),
+                (("--shot", "x.png@0"), "expected FILE.png[:PASS] or FILE.png[:PASS]@STEP with STEP from 1"),
                 (("--headless=yes",), "--headless takes no value, got 'yes'"),
                 (("--steps", 1, "--seconds", 1), "--steps and --seconds exclude each other"),
                 (("other.lua",), "only one scene"),

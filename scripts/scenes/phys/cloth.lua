@@ -29,7 +29,7 @@ function corsac.fixed()
   local mean, most = curtain:getStretch()
   corsac.metrics.set("curtain_mean", mean)
   corsac.metrics.set("curtain_most", most)
-  local points, deepest = cover:getPoints(), 0
+  local points, deepest = cover:getPoints(), 0 -- garbage: a table of points a step
   for i = 1, #points, 3 do
     local x, y, z = points[i] - 1.5, points[i + 1] - 0.6, points[i + 2]
     deepest = math.max(deepest, 0.6 - math.sqrt(x * x + y * y + z * z))
