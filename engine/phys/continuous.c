@@ -185,7 +185,8 @@ static bool meets(const guard *g, uint32_t i, uint32_t row, uint32_t j, uint32_t
     core_vec3 n;
     float t;
     shrink(g, &a.geom, &room);
-    float gap = phys_separation(&a.geom, &b.geom, &n);
+    bool far = b.geom.type == PHYS_MESH && !phys_mesh_near(&a.geom, &b.geom, CLEAR);
+    float gap = far ? PHYS_APART : phys_separation(&a.geom, &b.geom, &n);
     if (gap <= 0.0f) { // sunk deep: at least its middle stays on its side
         a.geom = middle_ball(&a.geom);
         gap = phys_separation(&a.geom, &b.geom, &n);

@@ -210,6 +210,14 @@ static float box_distance2(const phys_mesh_node *n, const core_aabb *b) {
     return d2;
 }
 
+bool phys_mesh_near(const phys_geom *shape, const phys_geom *mesh, float reach) {
+    phys_geom g = phys_geom_seen_from(shape, mesh);
+    phys_box box = grown(phys_geom_bounds(&g), core_v3(0, 0, 0), reach);
+    phys_mesh_walk walk;
+    phys_mesh_walk_begin(&walk, mesh->mesh, &box);
+    return phys_mesh_walk_next(&walk) != PHYS_MESH_NONE;
+}
+
 // Nearest triangle, branch and bound by the distance of boxes.
 float phys_mesh_separation(const phys_geom *shape, const phys_geom *mesh, core_vec3 *normal,
                            core_vec3 *on_mesh) {

@@ -136,6 +136,8 @@ void phys_mesh_collide(const phys_geom *shape, const phys_geom *mesh, float marg
                        phys_manifold *out);
 float phys_mesh_separation(const phys_geom *shape, const phys_geom *mesh, core_vec3 *normal,
                            core_vec3 *on_mesh);
+// False: no triangle is nearer than `reach` (m). True: one may be.
+bool phys_mesh_near(const phys_geom *shape, const phys_geom *mesh, float reach);
 // Every direction in which the surface comes nearer than `reach`: unit normals from the shape to
 // the mesh, places on the mesh, gaps (m). Returns how many.
 uint32_t phys_mesh_touches(const phys_geom *shape, const phys_geom *mesh, float reach,
