@@ -78,7 +78,7 @@ static GLuint vertex_array(const gfx_geometry *g, bool skinned) {
     if (skinned) {
         glVertexArrayVertexBuffer(vao, 2, g->skin, 0, sizeof(gfx_vertex_skin));
         attribute(vao, 2, GFX_ATTR_JOINT, 4, GL_UNSIGNED_SHORT, offsetof(gfx_vertex_skin, joint));
-        attribute(vao, 2, GFX_ATTR_WEIGHT, 4, GL_UNSIGNED_SHORT, offsetof(gfx_vertex_skin, weight));
+        attribute(vao, 2, GFX_ATTR_WEIGHT, 4, GL_FLOAT, offsetof(gfx_vertex_skin, weight));
     }
     glVertexArrayElementBuffer(vao, g->index);
     return vao;

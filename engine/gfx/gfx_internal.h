@@ -61,7 +61,7 @@ typedef struct gfx_vertex_shade {
 } gfx_vertex_shade;
 typedef struct gfx_vertex_skin {
     uint16_t joint[4];
-    uint16_t weight[4]; // unorm, sums to 65535
+    float weight[4]; // sums to one; 16 bits would be 3e-5 of a character off
 } gfx_vertex_skin;
 
 typedef struct gfx_mesh_store {

@@ -87,26 +87,16 @@ static void pack_shade(const core_mesh_data *d, const float *normal, gfx_vertex_
     }
 }
 
-// Weights in 16 bits that sum to one exactly: the largest takes the rounding.
 static void pack_skin(const core_mesh_data *d, gfx_mesh_store *store) {
     for (uint32_t i = 0; i < d->vertex_count; ++i) {
         const float *w = d->weight + 4 * (size_t)i;
         float sum = w[0] + w[1] + w[2] + w[3];
-        float scale = sum > 0.0f ? 65535.0f / sum : 0.0f;
-        int largest = 0, total = 0;
         for (int k = 0; k < 4; ++k) {
-            int q = (int)(CORE_MAX(w[k], 0.0f) * scale + 0.5f);
-            store->skin[i].weight[k] = (uint16_t)q;
-            store->skin[i].joint[k] = d->joint[4 * (size_t)i + k];
-            total += q;
-            largest = w[k] > w[largest] ? k : largest;
-            if (q > 0 && store->skin[i].joint[k] >= store->bones) {
-                store->bones = store->skin[i].joint[k] + 1u;
-            }
-        }
-        store->skin[i].weight[largest] = (uint16_t)(store->skin[i].weight[largest] + 65535 - total);
-        for (int k = 0; k < 4; ++k) { // joints without weight may be out of range in files
-            store->skin[i].joint[k] = store->skin[i].weight[k] ? store->skin[i].joint[k] : 0;
+            float share = sum > 0.0f ? CORE_MAX(w[k], 0.0f) / sum : k == 0;
+            uint16_t joint = share > 0.0f ? d->joint[4 * (size_t)i + k] : 0; // in files: any
+            store->skin[i].weight[k] = share;
+            store->skin[i].joint[k] = joint;
+            store->bones = CORE_MAX(store->bones, joint + 1u);
         }
     }
     store->bones = CORE_MAX(store->bones, 1u);
