@@ -43,13 +43,16 @@ static void leave(void *ctx, int code) {
 
 static bool change_scene(void *ctx, const char *path) {
     app_run *r = ctx;
-    if (strlen(path) >= sizeof r->next_scene) {
+    char inside[sizeof r->next_scene + 16];
+    if (strlen(path) >= sizeof r->next_scene - 16) {
         return core_fail_quiet("corsac.run: path '%.60s...' is too long", path);
     }
-    if (!core_vfs_exists(r->vfs, path)) {
+    snprintf(inside, sizeof inside, "%s/main.lua", path[0] ? path : "."); // of a game's folder
+    bool folder = core_vfs_exists(r->vfs, inside);
+    if (!folder && !core_vfs_exists(r->vfs, path)) {
         return core_fail_quiet("corsac.run: no file '%s' in the scene's folder", path);
     }
-    strcpy(r->next_scene, path);
+    strcpy(r->next_scene, folder ? inside : path);
     return true;
 }
 

@@ -157,6 +157,19 @@ class Usage(SceneCase):
         self.write("game/second.lua", "corsac.expect('counts.bodies', '==', 5)")
         self.assert_exit(corsac("run", self.dir / "game", "--headless", "--steps", 30), 3, "counts.bodies")
 
+    def test_a_folder_names_its_main_file(self):
+        self.write("game/main.lua", """
+            local round = (corsac.getRunData() or { round = 0 }).round
+            function corsac.fixed()
+              if corsac.getStep() == 3 and round == 0 then corsac.run("level", { round = 1 }) end
+              if corsac.getStep() == 3 and round == 2 then corsac.metrics.set("round", round) end
+            end""")
+        self.write("game/level/main.lua",
+                   "function corsac.fixed() if corsac.getStep() == 3 then corsac.run('.', { round = 2 }) end end")
+        done = corsac("run", self.dir / "game", "--headless", "--steps", 30, "--metrics", "-")
+        self.assert_exit(done, 0)
+        self.assertEqual(json.loads(done.out)["user"]["round"], 2)
+
     def test_arguments_after_two_dashes_reach_the_script(self):
         done = self.run_scene("function corsac.load(args) print(#args, args[1], args[2]) end", "--steps", 1,
                               "--", "--steps", "two")
