@@ -69,7 +69,7 @@ function corsac.fixed()
     corsac.metrics.set("up", up)
 end
 
-corsac.expect("user.jump_m", "<=", 0.06) -- between two steps, when physics takes over and when it gives back
+corsac.expect("user.jump_m", "<=", 0.08) -- between two steps, when physics takes over and when it gives back
 corsac.expect("user.deepest_m", ">=", -0.01)
 corsac.expect("user.resting", "==", n)
 corsac.expect("user.up", "==", n)
