@@ -46,8 +46,8 @@ static void draw_map(workload *w, const char *map, core_rng *rng) {
     } else if (strcmp(map, "blocks") == 0) { // boxes of up to 8 cells, a tenth of the ground
         for (uint32_t i = 0; i < side * side / 200; i++) {
             uint32_t x = core_rng_below(rng, side), y = core_rng_below(rng, side);
-            block_out(w, x, y, x + 1 + core_rng_below(rng, 8), y + 1 + core_rng_below(rng, 8),
-                      true);
+            uint32_t deep = core_rng_below(rng, 8); // one by one: arguments have no order
+            block_out(w, x, y, x + 1 + core_rng_below(rng, 8), y + 1 + deep, true);
         }
     } else { // rooms: walls every 16 cells with a door between neighbours
         for (uint32_t i = 15; i < side; i += 16) {

@@ -46,7 +46,8 @@ static core_vec3 line(core_rng *rng, uint32_t i, uint32_t n) {
 // Five floors: every body of a floor overlaps every other along y.
 static core_vec3 layered(core_rng *rng, uint32_t i, uint32_t n) {
     float half = 2.5f * half_edge(n);
-    core_vec3 p = core_v3(symmetric(rng, half), 20.0f * (float)(i % 5), symmetric(rng, half));
+    float z = symmetric(rng, half); // one by one: arguments have no order
+    core_vec3 p = core_v3(symmetric(rng, half), 20.0f * (float)(i % 5), z);
     return core_v3(p.x, p.y + symmetric(rng, 0.05f), p.z);
 }
 

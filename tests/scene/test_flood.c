@@ -149,8 +149,8 @@ static void movers_stay_on_the_surface(void) {
     core_rng rng = core_rng_make(7, 1);
     phys_mover mover[MOVERS];
     for (int i = 0; i < MOVERS; i++) {
-        mover[i] =
-            mover_at(core_v3(-9 + 6 * core_rng_float(&rng), 0, -9 + 4 * core_rng_float(&rng)));
+        float z = -9 + 4 * core_rng_float(&rng); // one by one: arguments have no order
+        mover[i] = mover_at(core_v3(-9 + 6 * core_rng_float(&rng), 0, z));
     }
     int checked = 0, above = 0;
     for (int step = 0; step < 60 * 40; step++) {

@@ -57,10 +57,10 @@ static phys_body obstacle(core_rng *rng) {
         core_quat lean = core_quat_axis_angle(core_v3(1, 0, 0), 0.6f);
         return add(PHYS_STATIC, &s, at, core_quat_mul(turn, lean));
     }
-    default:
-        return add_box(PHYS_STATIC, at,
-                       core_v3(0.2f + 2 * core_rng_float(rng), 1, 0.1f + core_rng_float(rng)),
-                       turn);
+    default: {
+        float z = 0.1f + core_rng_float(rng); // one by one: arguments have no order
+        return add_box(PHYS_STATIC, at, core_v3(0.2f + 2 * core_rng_float(rng), 1, z), turn);
+    }
     }
 }
 
