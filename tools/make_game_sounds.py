@@ -15,40 +15,20 @@ import subprocess
 import sys
 import wave
 
-RATE = 24000
-TAU = 2 * math.pi
-
-
-def times(duration):
-    return [i / RATE for i in range(round(duration * RATE))]
-
-
-def hull(t, duration, attack, decay):
-    """Rises linearly, falls exponentially, reaches zero at the end."""
-    return min(1.0, t / attack) * math.exp(-t / decay) * min(1.0, (duration - t) / 0.01)
-
-
-def noise(count, seed, smooth):
-    """Seeded noise through a one-pole low pass: `smooth` near 1 is dark."""
-    draw, out, y = random.Random(seed), [], 0.0
-    for _ in range(count):
-        y = smooth * y + (1 - smooth) * (2 * draw.random() - 1)
-        out.append(y)
-    peak = max(map(abs, out))
-    return [v / peak for v in out]
+from make_sounds import RATE, TAU, envelope, noise, seconds
 
 
 def step(seed, smooth, body, pitch):
     """A paw: a rustle above a soft knock."""
     duration = 0.13
     rustle = noise(round(duration * RATE), seed, smooth)
-    return [0.45 * rustle[i] * hull(t, duration, 0.004, 0.025) + body * math.sin(TAU * pitch * t) * hull(t, duration, 0.002, 0.022)
-            for i, t in enumerate(times(duration))]
+    return [0.45 * rustle[i] * envelope(t, duration, 0.004, 0.025) + body * math.sin(TAU * pitch * t) * envelope(t, duration, 0.002, 0.022)
+            for i, t in enumerate(seconds(duration))]
 
 
 def bell(pitch, duration, partials=((1, 0.6, 0.6), (2.76, 0.22, 0.3), (5.4, 0.1, 0.15))):
-    return [sum(a * math.sin(TAU * pitch * r * t) * hull(t, duration, 0.003, d) for r, a, d in partials)
-            for t in times(duration)]
+    return [sum(a * math.sin(TAU * pitch * r * t) * envelope(t, duration, 0.003, d) for r, a, d in partials)
+            for t in seconds(duration)]
 
 
 def mix(*layers):
@@ -74,7 +54,7 @@ def spirit(up):
     duration = 0.9
     air = noise(round(duration * RATE), 21, 0.8)
     out, phase = [], 0.0
-    for i, t in enumerate(times(duration)):
+    for i, t in enumerate(seconds(duration)):
         way = t / duration if up else 1 - t / duration
         phase += TAU * (220 + 440 * way * way) / RATE
         out.append((0.3 * math.sin(phase) + 0.2 * math.sin(1.5 * phase) + 0.2 * air[i]) * math.sin(math.pi * t / duration) ** 2)
@@ -86,11 +66,11 @@ def door():
     duration = 2.4
     out, phase = [], 0.0
     grain = noise(round(duration * RATE), 5, 0.97)
-    for i, t in enumerate(times(duration)):
+    for i, t in enumerate(seconds(duration)):
         phase += TAU * (70 + 25 * math.sin(3.1 * t) + 30 * grain[i]) / RATE
         saw = (phase / TAU) % 1 - 0.5
         out.append(0.3 * saw * math.sin(math.pi * t / duration) + 0.3 * grain[i] * math.sin(math.pi * t / duration))
-    knock = [math.sin(TAU * 60 * t) * hull(t, 0.3, 0.003, 0.07) for t in times(0.3)]
+    knock = [math.sin(TAU * 60 * t) * envelope(t, 0.3, 0.003, 0.07) for t in seconds(0.3)]
     return mix((out, 0, 0.8), (knock, 0.02, 0.6), (knock, 2.2, 0.7))
 
 
@@ -98,7 +78,7 @@ def alarm():
     """A low growl that rises."""
     duration = 1.1
     out, phase = [], 0.0
-    for t in times(duration):
+    for t in seconds(duration):
         phase += TAU * (62 + 50 * t) / RATE
         rough = 1 + 0.5 * math.sin(TAU * 23 * t)
         out.append(0.3 * rough * sum(math.sin(k * phase) / k for k in (1, 2, 3, 5)) * math.sin(math.pi * t / duration))
@@ -112,12 +92,12 @@ def caught():
 def splash():
     duration = 0.7
     drops = noise(round(duration * RATE), 8, 0.5)
-    return [0.7 * drops[i] * hull(t, duration, 0.01, 0.13) + 0.2 * math.sin(TAU * (180 + 500 * t) * t) * hull(t, duration, 0.01, 0.1)
-            for i, t in enumerate(times(duration))]
+    return [0.7 * drops[i] * envelope(t, duration, 0.01, 0.13) + 0.2 * math.sin(TAU * (180 + 500 * t) * t) * envelope(t, duration, 0.01, 0.1)
+            for i, t in enumerate(seconds(duration))]
 
 
 def jump():
-    return [0.35 * math.sin(TAU * (190 + 520 * t) * t) * hull(t, 0.2, 0.01, 0.06) for t in times(0.2)]
+    return [0.35 * math.sin(TAU * (190 + 520 * t) * t) * envelope(t, 0.2, 0.01, 0.06) for t in seconds(0.2)]
 
 
 def night():
@@ -133,7 +113,7 @@ def night():
         at = 0.3 * draw.random()
         while at < 7.6:
             for pulse in range(3):
-                for i, t in enumerate(times(0.03)):
+                for i, t in enumerate(seconds(0.03)):
                     out[round((at + 0.05 * pulse) * RATE) + i] += gain * math.sin(TAU * pitch * t) * math.sin(math.pi * t / 0.03)
             at += gap * (0.85 + 0.3 * draw.random())
     return out
@@ -142,7 +122,7 @@ def night():
 def hum():
     """A lantern's flame, a loop of two seconds: whole periods."""
     return [sum(a * math.sin(TAU * f * t) for f, a in ((98, 0.4), (147, 0.25), (196, 0.15), (294.5, 0.06)))
-            * (0.75 + 0.25 * math.sin(TAU * 1.5 * t)) * 0.6 for t in times(2)]
+            * (0.75 + 0.25 * math.sin(TAU * 1.5 * t)) * 0.6 for t in seconds(2)]
 
 
 def pluck(pitch, duration, seed, bright):
@@ -185,7 +165,7 @@ def music():
                 strings[tone] = pluck(tone, 2.2, round(tone), 0.35)
             put(strings[tone], number * bar + i * beat, 0.2, -0.6 if i % 2 else 0.3)
         pad = [0.05 * math.sin(math.pi * t / 3.2) ** 2 * (math.sin(TAU * chord[0] * t) + 0.7 * math.sin(TAU * chord[1] * t)
-               + 0.4 * math.sin(TAU * chord[3] * t + 0.3 * math.sin(TAU * 5 * t))) for t in times(3.2)]
+               + 0.4 * math.sin(TAU * chord[3] * t + 0.3 * math.sin(TAU * 5 * t))) for t in seconds(3.2)]
         put(pad, number * bar - 0.4, 1.0, 0.0)
     for i, tone in enumerate(melody):
         if tone:
