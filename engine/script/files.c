@@ -68,7 +68,8 @@ void script_check_save_name(lua_State *L, const char *name) {
         good = good && (isalnum((unsigned char)*c) || *c == '-' || *c == '_');
     }
     if (!good) {
-        bind_error(L, "corsac.save: \"%.80s\": a name has 1 to 64 letters, digits, - or _", name);
+        bind_error(L, "the name of a save, \"%.80s\": a name has 1 to 64 letters, digits, - or _",
+                   name);
     }
 }
 
